@@ -4,12 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from risorius.errors import FormatError
 
-__all__ = ["Format", "formats", "read_head", "read_landmarks", "register", "write_rig"]
+__all__ = [
+    "Format",
+    "formats",
+    "load_on_demand",
+    "read_head",
+    "read_landmarks",
+    "read_rig",
+    "register",
+    "write_rig",
+]
 
 # The types belong to stations below this one: (PolygonMesh, {name: LandmarkSpec}) and Rig.
 ReadHead = Callable[[Path], tuple[Any, Mapping[str, Any]]]
@@ -31,6 +41,12 @@ class Format:
 
 
 _FORMATS: list[Format] = []
+_ON_DEMAND: list[str] = []
+
+
+def load_on_demand(module: str) -> None:
+    """Name a module whose import registers formats; it is imported at the first question."""
+    _ON_DEMAND.append(module)
 
 
 def register(file_format: Format) -> None:
@@ -40,13 +56,15 @@ def register(file_format: Format) -> None:
 
 def formats() -> tuple[Format, ...]:
     """Return all registered formats."""
+    for module in _ON_DEMAND:
+        import_module(module)
     return tuple(_FORMATS)
 
 
 def _find(path: Path, verb: str) -> Any:
     ending = path.suffix.lower()
     known: list[str] = []
-    for file_format in _FORMATS:
+    for file_format in formats():
         function = getattr(file_format, verb)
         if function is None:
             continue

@@ -1,0 +1,64 @@
+"""Turn a static 3D head into a face that moves by muscles, and into a blendshape rig.
+
+The names below are loaded when they are first used, so that ``import risorius`` is quick.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from risorius import _formats
+
+if TYPE_CHECKING:
+    from risorius.controls.control import Control as Control
+    from risorius.controls.control import Pose as Pose
+    from risorius.errors import RisoriusError as RisoriusError
+    from risorius.errors import RisoriusWarning as RisoriusWarning
+    from risorius.head.head import Head as Head
+    from risorius.head.head import HeadOptions as HeadOptions
+    from risorius.rig.face import Face as Face
+    from risorius.rig.rig import MorphTarget as MorphTarget
+    from risorius.rig.rig import Rig as Rig
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "Control": "risorius.controls.control",
+    "Face": "risorius.rig.face",
+    "Head": "risorius.head.head",
+    "HeadOptions": "risorius.head.head",
+    "MorphTarget": "risorius.rig.rig",
+    "Pose": "risorius.controls.control",
+    "Rig": "risorius.rig.rig",
+    "RisoriusError": "risorius.errors",
+    "RisoriusWarning": "risorius.errors",
+}
+
+__all__ = [
+    "Control",
+    "Face",
+    "Head",
+    "HeadOptions",
+    "MorphTarget",
+    "Pose",
+    "Rig",
+    "RisoriusError",
+    "RisoriusWarning",
+    "__version__",
+]
+
+# The formats announce themselves when their package is imported: on the first read or write.
+_formats.load_on_demand("risorius.io")
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'risorius' has no attribute {name!r}")
+    value = getattr(import_module(_HOME[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

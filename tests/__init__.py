@@ -1,0 +1,1 @@
+"""Tests of risorius; the folders mirror `src/risorius`."""
