@@ -113,7 +113,7 @@ def _rotation(landmarks: LandmarkSet) -> FloatArray:
     if length == 0.0:
         raise LandmarkError(f"landmarks: {low!r} lies on the line through the eyes")
     up /= length
-    rotation = np.stack([across, up, np.cross(across, up)])
+    rotation = np.array([across, up, np.cross(across, up)])
     snapped = _nearest_permutation(rotation)
     cosine = 0.5 * (float(np.trace(rotation @ snapped.T)) - 1.0)
     angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
@@ -159,7 +159,7 @@ def _rotation_from_axes(axes: str) -> FloatArray:
             f"axes: {axes!r} is not understood; give up and forward, for example '+Y+Z' or '+Z-Y'"
         )
     up, forward = rows
-    return np.stack([np.cross(up, forward), up, forward])
+    return np.array([np.cross(up, forward), up, forward])
 
 
 def _scale(distance: float, unit: str | None) -> tuple[float, str]:
