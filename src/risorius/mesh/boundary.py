@@ -11,7 +11,7 @@ __all__ = ["boundary_loops"]
 
 
 def boundary_loops(faces: IntArray) -> list[IntArray]:
-    """Return the boundary loops as vertex indices in order.
+    """Return the boundary loops, each as its vertices (k,) in order.
 
     A loop is closed (its last vertex is joined to its first), visits no vertex twice, starts at
     its smallest vertex and runs along the sides of its faces, so that the surface lies on its

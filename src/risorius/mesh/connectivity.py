@@ -51,7 +51,15 @@ class EdgeFaces:
 
 
 class Components(NamedTuple):
-    """Loose pieces of a mesh, numbered by their smallest vertex; unused vertices carry -1."""
+    """Loose pieces of a mesh, numbered by their smallest vertex.
+
+    Parameters
+    ----------
+    of_vertex : (n,) int32
+        Piece of each vertex, -1 for unused vertices.
+    of_face : (m,) int32
+        Piece of each face.
+    """
 
     of_vertex: IntArray
     of_face: IntArray
@@ -65,7 +73,11 @@ class Components(NamedTuple):
 class Neighbours(NamedTuple):
     """One-ring neighbours in compressed rows.
 
-    The neighbours of vertex v are ``indices[indptr[v]:indptr[v + 1]]``, in ascending order.
+    Parameters
+    ----------
+    indptr : (n + 1,) int32
+        The neighbours of vertex v are ``indices[indptr[v]:indptr[v + 1]]``, in ascending order.
+    indices : (k,) int32
     """
 
     indptr: IntArray

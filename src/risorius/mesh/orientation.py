@@ -20,7 +20,14 @@ _FLAT = 1e-3
 
 
 class Orientation(NamedTuple):
-    """Faces after re-orientation and the mask (m,) of those that were turned."""
+    """Faces after re-orientation.
+
+    Parameters
+    ----------
+    faces : (m, 3) int32
+    flipped : (m,) bool
+        Which of them were turned.
+    """
 
     faces: IntArray
     flipped: BoolArray
