@@ -29,7 +29,18 @@ _SNAP_DEGREES = 30.0
 class Frame:
     """Similarity between the input's frame and the canonical one.
 
-    ``canonical = scale * (input - origin) @ rotation.T`` with `scale` in mm per input unit.
+    ``canonical = scale * (input - origin) @ rotation.T``
+
+    Parameters
+    ----------
+    rotation : (3, 3) float64
+        Its rows are the character's left, up and forward, in input axes.
+    scale : float
+        Length of one input unit [mm].
+    origin : (3,) float64
+        Input point that becomes the canonical origin [input unit].
+    unit : str
+        One of `MILLIMETRES`, or ``"custom"`` where none fits.
     """
 
     rotation: FloatArray
@@ -113,7 +124,7 @@ def _rotation(landmarks: LandmarkSet) -> FloatArray:
     if length == 0.0:
         raise LandmarkError(f"landmarks: {low!r} lies on the line through the eyes")
     up /= length
-    rotation = np.array([across, up, np.cross(across, up)])
+    rotation = np.array([across, up, np.cross(across, up)], dtype=np.float64)
     snapped = _nearest_permutation(rotation)
     cosine = 0.5 * (float(np.trace(rotation @ snapped.T)) - 1.0)
     angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
@@ -159,7 +170,7 @@ def _rotation_from_axes(axes: str) -> FloatArray:
             f"axes: {axes!r} is not understood; give up and forward, for example '+Y+Z' or '+Z-Y'"
         )
     up, forward = rows
-    return np.array([np.cross(up, forward), up, forward])
+    return np.array([np.cross(up, forward), up, forward], dtype=np.float64)
 
 
 def _scale(distance: float, unit: str | None) -> tuple[float, str]:

@@ -65,11 +65,11 @@ class Part:
         return first
 
     def from_source(self, vertices: npt.ArrayLike, *, vertex_count: int) -> IntArray:
-        """Return the welded vertex of each input vertex, -1 where it is not in this part."""
+        """Return the welded vertex (k,) of input `vertices` (k,), -1 where not in this part."""
         table = np.full(vertex_count, -1, np.int32)
         table[self.source] = self.welded
         return table[np.asarray(vertices)]
 
     def spread(self, values: npt.ArrayLike, out: FloatArray) -> None:
-        """Write per-vertex `values` (w, ...) of the part into the input-sized array `out`."""
+        """Write per-vertex `values` (w, ...) of the part into the rows of `out` (n, ...)."""
         out[self.source] = np.asarray(values)[self.welded]

@@ -35,7 +35,7 @@ class Labels:
     of_polygon: IntArray = field(default_factory=lambda: _NO_INDICES)
 
     def polygons(self, name: str) -> IntArray:
-        """Return the indices of the polygons that carry `name`."""
+        """Return the indices (k,) of the polygons that carry `name`."""
         if name not in self.names:
             return _NO_INDICES
         return np.flatnonzero(self.of_polygon == self.names.index(name)).astype(np.int32)
