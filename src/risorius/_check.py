@@ -49,10 +49,19 @@ def as_faces(name: str, value: npt.ArrayLike, *, vertex_count: int) -> IntArray:
     if bad.any():
         row = int(np.argmax(bad))
         raise ShapeError(
-            f"{name}: row {row} is {faces[row].tolist()}, indices must lie in "
-            f"0..{vertex_count - 1}"
+            f"{name}: row {row} is {faces[row].tolist()}, indices must lie in 0..{vertex_count - 1}"
         )
     return faces.astype(np.int32, copy=False)
+
+
+def require_indices(name: str, values: IntArray, *, count: int, low: int = 0) -> None:
+    """Raise `ShapeError` naming the first entry of `values` (k,) outside low..count - 1."""
+    bad = (values < low) | (values >= count)
+    if bad.any():
+        entry = int(np.argmax(bad))
+        raise ShapeError(
+            f"{name}: entry {entry} is {values[entry]}, indices must lie in {low}..{count - 1}"
+        )
 
 
 def as_number(

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
+from risorius._check import as_number
 from risorius.errors import ParameterError
 
 __all__ = ["Control", "ControlGroup", "Pose", "ResolvedPose", "resolve_pose"]
@@ -74,9 +73,7 @@ def resolve_pose(controls: Sequence[Control], pose: Pose) -> ResolvedPose:
             raise ParameterError(
                 f"pose: this face has no control {name!r}; it has {', '.join(sorted(ranges))}"
             )
-        number = float(value)
-        if not np.isfinite(number):
-            raise ParameterError(f"pose: {name} is {number}, every control must be finite")
+        number = as_number(f"pose: {name}", value)
         inside = min(max(number, control.low), control.high)
         if inside != number:
             clamped.append(

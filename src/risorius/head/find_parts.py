@@ -84,7 +84,7 @@ def _settle(name: str, points: FloatArray, landmarks: LandmarkSet, *, is_skin: b
         return name
     if is_skin:
         return "skin"
-    if name == "eye" or name == "lashes":
+    if name in ("eye", "lashes"):
         return f"{name}_{side_of_component(points, landmarks)}"
     if name == "teeth":
         return f"teeth_{upper_or_lower(points, landmarks)}"
@@ -108,7 +108,8 @@ def _by_name(mesh: PolygonMesh, given: Mapping[str, str]) -> list[str]:
         if not len(polygons):
             known = sorted({*mesh.objects.names, *mesh.groups.names, *mesh.materials.names})
             raise ParameterError(
-                f"part: nothing in the file is named {name!r}; it has {', '.join(known) or 'no names'}"
+                f"part: nothing in the file is named {name!r}; "
+                f"it has {', '.join(known) or 'no names'}"
             )
         for polygon in polygons.tolist():
             result[polygon] = kind

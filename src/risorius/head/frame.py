@@ -108,6 +108,8 @@ def detect_frame(
     right_eye = landmarks.positions(("3.8", "3.12")).mean(axis=0)
     rotation = _rotation_from_axes(axes) if axes else _rotation(landmarks)
     distance = float(np.linalg.norm(left_eye - right_eye))
+    if distance == 0.0:
+        raise LandmarkError("landmarks: left and right eye corners (3.7 3.11 3.8 3.12) coincide")
     scale, name = _scale(distance, unit)
     return Frame(rotation, scale, 0.5 * (left_eye + right_eye), name)
 

@@ -10,7 +10,7 @@ from typing import Any, NoReturn, cast
 
 from risorius.errors import FormatError
 
-__all__ = ["parse_json", "read_bytes_limited", "read_json"]
+__all__ = ["MEGABYTE", "check_schema", "parse_json", "read_bytes_limited", "read_json"]
 
 MEGABYTE = 1 << 20
 _DIGITS = 300  # longest number a JSON file may hold; the largest float64 has 309 digits

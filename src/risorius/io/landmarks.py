@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,7 +11,8 @@ from typing import Any, cast
 from risorius._formats import Format, register
 from risorius.errors import FormatError, RisoriusWarning
 from risorius.io.atomic import write_bytes
-from risorius.io.bounded import check_schema, read_json
+from risorius.io.bounded import MEGABYTE, check_schema, read_json
+from risorius.io.json_fields import Fields
 from risorius.landmarks.feature_points import feature_points
 from risorius.landmarks.landmark_set import LandmarkSpec
 
@@ -20,8 +20,7 @@ __all__ = ["landmarks_from_json", "landmarks_to_json", "read_landmarks", "write_
 
 SCHEMA = "risorius/landmarks"
 VERSION = 1
-_MEGABYTES = 16
-_LARGEST_INDEX = 2**31 - 1
+_LIMIT = 16 * MEGABYTE
 
 
 def read_landmarks(path: str | Path) -> dict[str, LandmarkSpec]:
@@ -43,7 +42,7 @@ def read_landmarks(path: str | Path) -> dict[str, LandmarkSpec]:
         If names are not MPEG-4 feature points; they are kept.
     """
     where = str(path)
-    document = read_json(path, limit=_MEGABYTES << 20)
+    document = read_json(path, limit=_LIMIT)
     if "schema" in document:
         check_schema(document, where, schema=SCHEMA, version=VERSION)
     table = document.get("landmarks", document.get("fdp"))
@@ -116,47 +115,22 @@ def write_landmarks(specs: Mapping[str, LandmarkSpec], path: str | Path) -> None
 
 
 def _spec(place: Any, where: str, index_base: int) -> LandmarkSpec:
-    if not isinstance(place, dict):
-        raise FormatError(f'{where}: expected {{"vertex": ...}} or another place')
-    entry = cast("dict[str, Any]", place)
-    confidence = entry.get("confidence", "")
-    if not isinstance(confidence, str):
-        raise FormatError(f'{where}: "confidence" must be a text')
-    if entry.get("vertex") is not None:
-        vertex = _index(entry["vertex"], f'{where}: "vertex"', index_base)
+    entry = Fields(place, where)
+    confidence = entry.text("confidence", default="")
+    if "vertex" in entry:
+        vertex = entry.integer("vertex", low=index_base) - index_base
         return LandmarkSpec(vertex=vertex, confidence=confidence)
-    if entry.get("face") is not None:
-        face = _index(entry["face"], f'{where}: "face"', index_base)
-        bary = _three(entry.get("bary"), f'{where}: "bary"')
-        if abs(sum(bary) - 1.0) > 1e-6 or min(bary) < -1e-6:
-            raise FormatError(f'{where}: "bary" must be three weights from 0 that sum to 1')
-        return LandmarkSpec(face=face, bary=bary, confidence=confidence)
-    position = entry.get("position", entry.get("pos"))
-    if position is None:
+    if "face" in entry:
+        face = entry.integer("face", low=index_base) - index_base
+        a, b, c = entry.numbers("bary", 3)
+        if abs(a + b + c - 1.0) > 1e-6 or min(a, b, c) < -1e-6:
+            raise FormatError(f"{where}: bary: three weights from 0 must sum to 1")
+        return LandmarkSpec(face=face, bary=(a, b, c), confidence=confidence)
+    key = "position" if "position" in entry else "pos"
+    if key not in entry:
         raise FormatError(f'{where}: has no "vertex", "face" with "bary", or "position"')
-    return LandmarkSpec(position=_three(position, f"{where}: position"), confidence=confidence)
-
-
-def _index(value: Any, where: str, index_base: int) -> int:
-    if isinstance(value, bool) or not isinstance(value, int):
-        raise FormatError(f"{where} must be a whole number")
-    if not index_base <= value <= _LARGEST_INDEX:
-        raise FormatError(f"{where} must lie in {index_base}..{_LARGEST_INDEX}")
-    return value - index_base
-
-
-def _three(value: Any, where: str) -> tuple[float, float, float]:
-    if not isinstance(value, list) or len(cast("list[Any]", value)) != 3:
-        raise FormatError(f"{where} must be a list of three numbers")
-    numbers: list[float] = []
-    for entry in cast("list[Any]", value):
-        if isinstance(entry, bool) or not isinstance(entry, int | float):
-            raise FormatError(f"{where} must be a list of three numbers")
-        number = float(entry)
-        if not math.isfinite(number):
-            raise FormatError(f"{where} must be finite")
-        numbers.append(number)
-    return numbers[0], numbers[1], numbers[2]
+    x, y, z = entry.numbers(key, 3)
+    return LandmarkSpec(position=(x, y, z), confidence=confidence)
 
 
 register(Format("landmarks", (".json",), read_landmarks=read_landmarks))

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from risorius._check import FloatArray, IntArray
+from risorius._check import FloatArray
 from risorius.errors import LandmarkError
 from risorius.landmarks.feature_points import mirror_name
 from risorius.mesh.polygon_mesh import PolygonMesh
 
 __all__ = ["Landmark", "LandmarkSet", "LandmarkSpec", "resolve"]
+
+# A position farther off the mesh than this share of its size belongs to another mesh or unit.
+_FARTHEST = 0.1
+_BARY_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,10 @@ class LandmarkSet(Mapping[str, Landmark]):
         except KeyError:
             raise LandmarkError(f"landmarks: {name!r} is missing; add it to the file") from None
 
+    def get(self, name: str, default: Any = None) -> Any:
+        """Return landmark `name`, or `default` without it."""
+        return self._landmarks.get(name, default)
+
     def __contains__(self, name: object) -> bool:
         return name in self._landmarks
 
@@ -122,40 +131,68 @@ def resolve(specs: Mapping[str, LandmarkSpec], mesh: PolygonMesh) -> LandmarkSet
     Raises
     ------
     LandmarkError
-        If an index is out of range or a position lies far off the mesh (over a tenth of the
-        mesh's size); the message names the landmark.
+        If an index is out of range, barycentric coordinates do not sum to 1, or a position lies
+        far off the mesh (over a tenth of its size); the message names the landmark.
     """
-    triangles: IntArray = mesh.triangles
-    used = np.unique(triangles)
-    if not len(used):
+    if not len(mesh.triangles):
         raise LandmarkError("landmarks: the mesh has no faces to carry landmarks")
-    tree = cKDTree(mesh.positions[used])
-    size = float(np.ptp(mesh.positions[used], axis=0).max())
+    nearest = _Nearest(mesh)
     landmarks: list[Landmark] = []
     for name, spec in specs.items():
         if spec.vertex is not None:
-            if not 0 <= spec.vertex < mesh.vertex_count:
-                raise LandmarkError(
-                    f"landmarks: {name!r} names vertex {spec.vertex}, the mesh has "
-                    f"{mesh.vertex_count}; is this the landmark file of another mesh?"
-                )
-            landmarks.append(Landmark(name, (spec.vertex,), (1.0,), spec.confidence))
+            landmarks.append(_at_vertex(name, spec.vertex, spec.confidence, mesh))
         elif spec.face is not None and spec.bary is not None:
-            if not 0 <= spec.face < len(triangles):
-                raise LandmarkError(
-                    f"landmarks: {name!r} names triangle {spec.face}, the mesh has "
-                    f"{len(triangles)}; is this the landmark file of another mesh?"
-                )
-            corners = tuple(int(v) for v in triangles[spec.face])
-            landmarks.append(Landmark(name, corners, spec.bary, spec.confidence))
+            landmarks.append(_on_triangle(name, spec.face, spec.bary, spec.confidence, mesh))
         elif spec.position is not None:
-            distance, nearest = tree.query(np.asarray(spec.position))
-            if distance > 0.1 * size:
-                raise LandmarkError(
-                    f"landmarks: {name!r} at {list(spec.position)} lies {distance:.3g} off the "
-                    f"mesh (size {size:.3g}); positions must be in the mesh's own unit and axes"
-                )
-            landmarks.append(Landmark(name, (int(used[nearest]),), (1.0,), spec.confidence))
+            vertex = nearest.vertex(name, spec.position)
+            landmarks.append(Landmark(name, (vertex,), (1.0,), spec.confidence))
         else:
             raise LandmarkError(f"landmarks: {name!r} has no vertex, face + bary or position")
     return LandmarkSet(landmarks, mesh.positions)
+
+
+def _at_vertex(name: str, vertex: int, confidence: str, mesh: PolygonMesh) -> Landmark:
+    if not 0 <= vertex < mesh.vertex_count:
+        raise LandmarkError(
+            f"landmarks: {name!r} names vertex {vertex}, the mesh has {mesh.vertex_count}; "
+            "is this the landmark file of another mesh?"
+        )
+    return Landmark(name, (vertex,), (1.0,), confidence)
+
+
+def _on_triangle(
+    name: str, face: int, bary: tuple[float, float, float], confidence: str, mesh: PolygonMesh
+) -> Landmark:
+    if not 0 <= face < len(mesh.triangles):
+        raise LandmarkError(
+            f"landmarks: {name!r} names triangle {face}, the mesh has {len(mesh.triangles)}; "
+            "is this the landmark file of another mesh?"
+        )
+    if not abs(sum(bary) - 1.0) <= _BARY_TOLERANCE or min(bary) < -_BARY_TOLERANCE:
+        raise LandmarkError(
+            f"landmarks: {name!r} has bary {list(bary)}; the three shares must be 0 or more and "
+            "sum to 1"
+        )
+    corners = tuple(int(vertex) for vertex in mesh.triangles[face])
+    return Landmark(name, corners, bary, confidence)
+
+
+class _Nearest:
+    """Finds the vertex, among those that faces use, nearest to a position."""
+
+    def __init__(self, mesh: PolygonMesh) -> None:
+        self._used = np.unique(mesh.triangles)
+        used_positions = mesh.positions[self._used]
+        self._tree = cKDTree(used_positions)
+        self._size = float(np.ptp(used_positions, axis=0).max())
+
+    def vertex(self, name: str, position: tuple[float, float, float]) -> int:
+        if not np.isfinite(position).all():
+            raise LandmarkError(f"landmarks: {name!r} at {list(position)} is not finite")
+        distance, row = self._tree.query(np.asarray(position))
+        if distance > _FARTHEST * self._size:
+            raise LandmarkError(
+                f"landmarks: {name!r} at {list(position)} lies {distance:.3g} off the mesh (size "
+                f"{self._size:.3g}); positions must be in the mesh's own unit and axes"
+            )
+        return int(self._used[row])

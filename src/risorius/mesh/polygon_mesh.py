@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from risorius._check import FloatArray, IntArray
+from risorius._check import FloatArray, IntArray, as_points, require_indices
 from risorius.errors import ShapeError
 from risorius.mesh.core import TriMesh
 
@@ -74,15 +74,16 @@ class PolygonMesh:
     targets: Mapping[str, FloatArray] = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "positions", as_points("positions", self.positions))
         n, c, m = len(self.positions), len(self.corners), len(self.offsets) - 1
-        if self.positions.ndim != 2 or self.positions.shape[1] != 3:
-            raise ShapeError(f"positions: expected shape (n, 3), got {self.positions.shape}")
         if m < 0 or self.offsets[0] != 0 or self.offsets[-1] != c:
             raise ShapeError("offsets: must start at 0 and end at the number of corners")
-        if c and (self.corners.min() < 0 or self.corners.max() >= n):
-            raise ShapeError(f"corners: vertex indices must lie in 0..{n - 1}")
+        if (np.diff(self.offsets) < 0).any():
+            raise ShapeError("offsets: must not decrease")
+        require_indices("corners", self.corners, count=n)
         if len(self.uv_corners) not in (0, c):
             raise ShapeError(f"uv_corners: expected {c} entries or none")
+        require_indices("uv_corners", self.uv_corners, count=len(self.uvs), low=-1)
         for name, labels in (
             ("objects", self.objects),
             ("groups", self.groups),
@@ -90,6 +91,7 @@ class PolygonMesh:
         ):
             if len(labels.of_polygon) not in (0, m):
                 raise ShapeError(f"{name}: expected {m} entries or none")
+            require_indices(name, labels.of_polygon, count=len(labels.names), low=-1)
         for name, deltas in self.targets.items():
             if deltas.shape != self.positions.shape:
                 raise ShapeError(f"target {name!r}: expected shape {self.positions.shape}")

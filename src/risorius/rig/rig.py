@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius import _formats
-from risorius._check import FloatArray, IntArray
+from risorius._check import FloatArray, IntArray, as_points
 from risorius.controls.control import Control, Pose
 from risorius.errors import ParameterError, ShapeError
 from risorius.head.frame import Frame
@@ -41,12 +41,21 @@ class MorphTarget:
     deltas: FloatArray
     pose: Pose = field(default_factory=dict[str, float])
 
+    def __post_init__(self) -> None:
+        if self.deltas.shape != (len(self.vertices), 3):
+            raise ShapeError(
+                f"target {self.name!r}: expected deltas of shape ({len(self.vertices)}, 3), "
+                f"got {self.deltas.shape}"
+            )
+        if len(self.vertices) and (self.vertices[0] < 0 or (np.diff(self.vertices) <= 0).any()):
+            raise ShapeError(f"target {self.name!r}: vertices must ascend from 0 or above")
+
     @staticmethod
     def from_dense(
         name: str, deltas: npt.ArrayLike, *, pose: Pose | None = None, still: float = 0.0
     ) -> MorphTarget:
         """Keep the rows of `deltas` (n, 3) that are longer than `still`."""
-        dense = np.asarray(deltas, dtype=np.float64)
+        dense = as_points(f"target {name!r}: deltas", deltas)
         vertices = np.flatnonzero((dense * dense).sum(axis=1) > still * still).astype(np.int32)
         return MorphTarget(name, vertices, dense[vertices], dict(pose or {}))
 
@@ -67,8 +76,8 @@ class Rig:
         The neutral head, bit for bit the input.
     targets : tuple of MorphTarget
         Names are unique.
-    part_of_vertex : (n,) int8
-        Index into `part_names`, -1 for unused vertices.
+    part_of_vertex : (n,) int32
+        Index into `part_names`, -1 for unused vertices; may be empty.
     landmarks : mapping of str to LandmarkSpec
         So that the rig can be inspected, played and cloned alone.
     frame : Frame
@@ -107,6 +116,19 @@ class Rig:
         """Target names in order."""
         return tuple(target.name for target in self.targets)
 
+    def target(self, name: str) -> MorphTarget:
+        """Return the target called `name`.
+
+        Raises
+        ------
+        ParameterError
+            If there is none.
+        """
+        found = self.by_name.get(name)
+        if found is None:
+            raise ParameterError(f"rig: no target {name!r}; it has {', '.join(self.names)}")
+        return found
+
     def posed(self, weights: Mapping[str, float]) -> FloatArray:
         """Return neutral + weighted targets (n, 3) [file frame and unit].
 
@@ -117,25 +139,13 @@ class Rig:
         """
         positions = self.mesh.positions.copy()
         for name, weight in weights.items():
-            target = self.by_name.get(name)
-            if target is None:
-                raise ParameterError(f"rig: no target {name!r}; it has {', '.join(self.names)}")
+            target = self.target(name)
             positions[target.vertices] += weight * target.deltas
         return positions
 
     def subset(self, names: Iterable[str]) -> Rig:
         """Return a rig with only the targets `names`, in that order."""
-        targets = tuple(self.by_name[name] for name in names)
-        return Rig(
-            self.mesh,
-            targets,
-            self.part_names,
-            self.part_of_vertex,
-            self.landmarks,
-            self.frame,
-            self.controls,
-            self.left_out,
-        )
+        return replace(self, targets=tuple(self.target(name) for name in names))
 
     def save(self, path: str | Path) -> None:
         """Write the rig; the ending of `path` chooses the format.

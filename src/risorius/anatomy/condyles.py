@@ -1,0 +1,45 @@
+"""Where the condyles of a head are: the hinge of its jaw."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import as_file, files
+
+from risorius import _formats
+from risorius._check import FloatArray
+from risorius.anatomy.template import builtin_head, warp_between
+from risorius.head.head import Head
+from risorius.landmarks.landmark_set import LandmarkSet, resolve
+
+__all__ = ["builtin_condyles", "condyles"]
+
+# The skin point over a condyle lies this far outside the joint's middle [mm].
+_TISSUE = 14.0
+
+
+@cache
+def _builtin_skull_landmarks() -> LandmarkSet:
+    folder = files("risorius.anatomy").joinpath("assets")
+    with as_file(folder) as path:
+        mesh, _ = _formats.read_head(path / "skull.obj")
+        return resolve(_formats.read_landmarks(path / "skull.landmarks.json"), mesh)
+
+
+def builtin_condyles() -> tuple[FloatArray, FloatArray]:
+    """Return the left and right condyle (3,) of the built-in skull [mm]."""
+    marks = _builtin_skull_landmarks()
+    return marks.position("condyle_l"), marks.position("condyle_r")
+
+
+def condyles(head: Head) -> tuple[FloatArray, FloatArray]:
+    """Return the left and right condyle (3,) of a head [mm].
+
+    The head's own landmarks ``condyle_l`` and ``condyle_r`` (on the skin) if it has them, else
+    those of the built-in skull carried over by the landmarks that both heads have.
+    """
+    if "condyle_l" in head.landmarks and "condyle_r" in head.landmarks:
+        left, right = head.landmarks.positions(("condyle_l", "condyle_r"))
+        return left - [_TISSUE, 0.0, 0.0], right + [_TISSUE, 0.0, 0.0]
+    warp = warp_between(builtin_head().landmarks, head.landmarks)
+    left, right = warp(builtin_condyles())
+    return left, right

@@ -1,0 +1,65 @@
+"""PNG files."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from threading import get_ident
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image, UnidentifiedImageError
+
+from risorius.errors import FormatError, ShapeError
+
+__all__ = ["as_image", "read_png", "write_png"]
+
+Uint8Array = npt.NDArray[np.uint8]
+
+
+def as_image(name: str, value: npt.ArrayLike) -> Uint8Array:
+    """Return `value` as an (h, w, 3) uint8 array.
+
+    Raises
+    ------
+    ShapeError
+        If it has another shape or type, or no pixels.
+    """
+    image = np.asarray(value)
+    if image.ndim != 3 or image.shape[2] != 3 or not image.size:
+        raise ShapeError(f"{name}: expected shape (height, width, 3), got {image.shape}")
+    if image.dtype != np.uint8:
+        raise ShapeError(f"{name}: expected uint8, got {image.dtype}; scale it to 0..255")
+    return image
+
+
+def write_png(path: str | Path, image: npt.ArrayLike) -> None:
+    """Write `image` (h, w, 3) uint8 to `path`; the file appears complete or not at all."""
+    picture = Image.fromarray(np.ascontiguousarray(as_image("image", image)))
+    target = Path(path)
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.{get_ident()}.tmp")
+    try:
+        with temporary.open("wb") as file:
+            picture.save(file, format="PNG", compress_level=6)
+        temporary.replace(target)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def read_png(path: str | Path) -> Uint8Array:
+    """Read `path` as an (h, w, 3) uint8 array; an alpha channel is dropped.
+
+    Raises
+    ------
+    FormatError
+        If the file is no PNG or broken.
+    """
+    try:
+        with Image.open(path, formats=["PNG"]) as picture:
+            return np.asarray(picture.convert("RGB"), dtype=np.uint8)
+    except FileNotFoundError:
+        raise
+    except (UnidentifiedImageError, OSError, ValueError, SyntaxError) as error:
+        raise FormatError(f"{path}: not a readable PNG file ({error}); export it again") from None
+    except Image.DecompressionBombError as error:
+        raise FormatError(f"{path}: the picture is too large ({error})") from None

@@ -1,0 +1,207 @@
+"""Linear muscle: pulls skin towards its origin inside a cone (Waters 1987, Bui et al. 2003)."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from risorius._check import FloatArray, IntArray, as_number
+from risorius.errors import ParameterError, RisoriusWarning
+from risorius.vectormuscle.muscle import (
+    MIRROR,
+    FaceContext,
+    Warp,
+    mirrored_name,
+    read_vector,
+    register_kind,
+)
+from risorius.vectormuscle.profile import angular_factor, fold_limit, radial_factor
+
+__all__ = ["BoundLinear", "LinearMuscle"]
+
+# Published k is not given; ours: this share of the shorter of the two radii.
+_PULL = 0.4
+
+
+@dataclass(frozen=True, eq=False)
+class LinearMuscle:
+    """Ten numbers and a region.
+
+    Parameters
+    ----------
+    name : str
+        Control name.
+    origin, insertion : (3,) float64
+        Bony end and skin end [mm].
+    start_radius, finish_radius : float
+        Where the fall-off starts and ends, from the origin [mm].
+    half_angle : float
+        Half opening of the zone [deg].
+    strength : float
+        Contraction scale g.
+    regions : tuple of str
+        Regions it may move; empty for all.
+    out : float
+        Outward push at full effect, in pulls: tissue that bunches up.
+    """
+
+    name: str
+    origin: FloatArray
+    insertion: FloatArray
+    start_radius: float
+    finish_radius: float
+    half_angle: float
+    strength: float = 1.0
+    regions: tuple[str, ...] = ()
+    out: float = 0.0
+
+    def __post_init__(self) -> None:
+        if float(np.linalg.norm(self.insertion - self.origin)) == 0.0:
+            raise ParameterError(f"muscle {self.name}: origin and insertion are one point")
+        if not 0.0 < self.half_angle < 90.0:
+            clamped = float(np.clip(self.half_angle, 1.0, 89.0))
+            _warn(f"muscle {self.name}: half_angle {self.half_angle:g} clamped to {clamped:g}")
+            object.__setattr__(self, "half_angle", clamped)
+        if self.finish_radius <= 0.0:
+            raise ParameterError(f"muscle {self.name}: finish_radius must be above 0")
+        if not 0.0 < self.start_radius < self.finish_radius:
+            clamped = 0.7 * self.finish_radius
+            _warn(
+                f"muscle {self.name}: start_radius {self.start_radius:g} must lie between 0 and "
+                f"finish_radius {self.finish_radius:g}; taken as {clamped:g}"
+            )
+            object.__setattr__(self, "start_radius", clamped)
+
+    @property
+    def pull(self) -> float:
+        """Displacement at contraction 1 where the effect is full [mm], below the fold limit."""
+        radii = min(self.start_radius, self.finish_radius - self.start_radius)
+        limit = fold_limit(start_radius=self.start_radius, finish_radius=self.finish_radius)
+        return min(self.strength * _PULL * radii, 0.98 * limit)
+
+    def mirrored(self) -> LinearMuscle:
+        """Return the muscle of the other side."""
+        return replace(
+            self,
+            name=mirrored_name(self.name),
+            origin=self.origin * MIRROR,
+            insertion=self.insertion * MIRROR,
+        )
+
+    def fitted(self, warp: Warp) -> LinearMuscle:
+        """Return the muscle carried by `warp`; radii scale with the local stretch [O3]."""
+        origin, insertion = warp(np.stack([self.origin, self.insertion]))
+        before = float(np.linalg.norm(self.insertion - self.origin))
+        scale = float(np.linalg.norm(insertion - origin)) / before
+        return replace(
+            self,
+            origin=origin,
+            insertion=insertion,
+            start_radius=scale * self.start_radius,
+            finish_radius=scale * self.finish_radius,
+        )
+
+    def influence(self, points: FloatArray, *, smooth: bool = True) -> FloatArray:
+        """Return the effect ``r a`` (n,) at `points` (n, 3), 0 outside the zone."""
+        offset = points - self.origin
+        distance = np.linalg.norm(offset, axis=1)
+        along = (self.insertion - self.origin) / np.linalg.norm(self.insertion - self.origin)
+        cosine = (offset @ along) / np.maximum(distance, 1e-300)
+        angle = np.arccos(np.clip(cosine, -1.0, 1.0))
+        radial = radial_factor(
+            distance, start_radius=self.start_radius, finish_radius=self.finish_radius
+        )
+        angular = angular_factor(
+            angle,
+            half_angle=np.radians(self.half_angle),
+            profile="smooth" if smooth else "published",
+        )
+        return np.where(distance > 0.0, radial * angular, 0.0)
+
+    def bind(self, context: FaceContext) -> BoundLinear:
+        """Precompute the zone: permitted vertices with an effect."""
+        effect = self.influence(context.positions, smooth=context.angular == "smooth")
+        if self.regions:
+            effect = effect * context.regions.permission(self.regions)
+        effect = effect * context.regions.mobility
+        vertices = np.flatnonzero(effect > 0.0).astype(np.int32)
+        return BoundLinear(
+            vertices, self.pull * effect[vertices], self.origin, self.out, context.normals[vertices]
+        )
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the recipe entry."""
+        entry: dict[str, Any] = {
+            "name": self.name,
+            "kind": "linear",
+            "origin": self.origin.round(3).tolist(),
+            "insertion": self.insertion.round(3).tolist(),
+            "start_radius": round(self.start_radius, 3),
+            "finish_radius": round(self.finish_radius, 3),
+            "half_angle": self.half_angle,
+            "strength": self.strength,
+        }
+        if self.regions:
+            entry["regions"] = list(self.regions)
+        if self.out:
+            entry["out"] = self.out
+        return entry
+
+
+@dataclass(frozen=True, eq=False)
+class BoundLinear:
+    """Zone of a linear muscle: `pull` (k,) [mm] at contraction 1 towards `origin` (3,)."""
+
+    vertices: IntArray
+    pull: FloatArray
+    origin: FloatArray
+    out: float
+    normals: FloatArray
+
+    def displace(self, points: FloatArray, contraction: float) -> FloatArray:
+        """Return ``-k g c r a d/|d|`` (k, 3): towards the origin (erratum E2)."""
+        offset = points - self.origin
+        distance = np.linalg.norm(offset, axis=1)
+        scale = contraction * self.pull / np.maximum(distance, 1e-300)
+        result = -np.where(distance > 0.0, scale, 0.0)[:, None] * offset
+        if self.out:
+            result += (self.out * contraction * self.pull)[:, None] * self.normals
+        return result
+
+
+def _warn(message: str) -> None:
+    warnings.warn(message, RisoriusWarning, stacklevel=4)
+
+
+def _read(entry: Mapping[str, Any], where: str) -> LinearMuscle:
+    regions = entry.get("regions", [])
+    if not isinstance(regions, list) or not all(isinstance(r, str) for r in regions):
+        raise ParameterError(f"{where}: regions must be a list of region names")
+    number = {
+        key: as_number(f"{where}: {key}", entry.get(key, default))
+        for key, default in (
+            ("start_radius", None),
+            ("finish_radius", None),
+            ("half_angle", None),
+            ("strength", 1.0),
+            ("out", 0.0),
+        )
+    }
+    return LinearMuscle(
+        str(entry["name"]),
+        read_vector(entry, "origin", where),
+        read_vector(entry, "insertion", where),
+        number["start_radius"],
+        number["finish_radius"],
+        number["half_angle"],
+        number["strength"],
+        tuple(regions),
+        number["out"],
+    )
+
+
+register_kind("linear", _read)

@@ -1,0 +1,117 @@
+"""What every kind of vector muscle is: a recipe that binds to a face and then displaces it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius._check import FloatArray, IntArray
+from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.regions import Regions
+from risorius.errors import ParameterError
+from risorius.vectormuscle.profile import AngularProfile
+
+__all__ = [
+    "KINDS",
+    "BoundMuscle",
+    "FaceContext",
+    "VectorMuscle",
+    "register_kind",
+]
+
+Warp = Callable[[npt.ArrayLike], FloatArray]
+
+
+@dataclass(frozen=True, eq=False)
+class FaceContext:
+    """What a muscle may look at when it binds.
+
+    Parameters
+    ----------
+    positions, normals : (n, 3) float64
+        Skin at rest, canonical frame [mm].
+    mechanics : Mechanics
+        Lips and lids of the head.
+    regions : Regions
+        Region weights of the skin.
+    angular : {"smooth", "published"}
+    """
+
+    positions: FloatArray
+    normals: FloatArray
+    mechanics: Mechanics
+    regions: Regions
+    angular: AngularProfile
+
+
+class BoundMuscle(Protocol):
+    """A muscle on one face: its zone of influence, computed once."""
+
+    @property
+    def vertices(self) -> IntArray:
+        """Skin vertices (k,) of the zone."""
+        ...
+
+    def displace(self, points: FloatArray, contraction: float) -> FloatArray:
+        """Return the displacement (k, 3) [mm] of the zone's vertices standing at `points`."""
+        ...
+
+
+class VectorMuscle(Protocol):
+    """A muscle of the recipe."""
+
+    @property
+    def name(self) -> str:
+        """Control name, with side."""
+        ...
+
+    def mirrored(self) -> VectorMuscle:
+        """Return the muscle of the other side (mirror plane x = 0 of the recipe's head)."""
+        ...
+
+    def fitted(self, warp: Warp) -> VectorMuscle:
+        """Return the muscle carried to another head; lengths scale with the local stretch."""
+        ...
+
+    def bind(self, context: FaceContext) -> BoundMuscle:
+        """Compute the zone of influence on a face."""
+        ...
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the recipe entry."""
+        ...
+
+
+Reader = Callable[[Mapping[str, Any], str], VectorMuscle]
+KINDS: dict[str, Reader] = {}
+"""Muscle kinds by the word that recipes use; each kind's module adds itself."""
+
+
+def register_kind(kind: str, reader: Reader) -> None:
+    """Add a muscle kind."""
+    KINDS[kind] = reader
+
+
+def mirrored_name(name: str) -> str:
+    """Return the control name of the other side."""
+    if name.endswith("_l"):
+        return f"{name[:-2]}_r"
+    return f"{name[:-2]}_l" if name.endswith("_r") else name
+
+
+def read_vector(entry: Mapping[str, Any], key: str, where: str) -> FloatArray:
+    """Return ``entry[key]`` as a finite (3,) vector."""
+    try:
+        vector = np.asarray(entry.get(key), dtype=np.float64)
+    except (TypeError, ValueError):
+        vector = np.zeros(0)
+    if vector.shape != (3,) or not np.isfinite(vector).all():
+        raise ParameterError(f"{where}: {key} must be three finite numbers [mm]")
+    return vector
+
+
+MIRROR = np.array([-1.0, 1.0, 1.0])
