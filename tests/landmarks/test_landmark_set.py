@@ -85,8 +85,9 @@ def test_a_vertex_is_preferred_to_a_position() -> None:
 
 def test_a_position_is_never_bound_to_a_vertex_without_faces() -> None:
     loose = [[0.1, 0.1, 0.0]]
-    mesh = PolygonMesh(np.vstack([MESH.positions, loose]), MESH.corners, MESH.offsets)
-    assert resolve({"2.1": LandmarkSpec(position=(0.1, 0.11, 0.0))}, mesh).vertex("2.1") == 0
+    positions = np.vstack([loose, MESH.positions])
+    mesh = PolygonMesh(positions, MESH.corners + 1, MESH.offsets)
+    assert resolve({"2.1": LandmarkSpec(position=(0.1, 0.11, 0.0))}, mesh).vertex("2.1") == 1
 
 
 @given(st.integers(0, 7))

@@ -41,6 +41,7 @@ def test_a_target_holds_only_the_vertices_that_move() -> None:
 def test_motion_up_to_the_still_length_is_dropped() -> None:
     assert MorphTarget.from_dense("lift", LIFT, still=1.0).vertices.tolist() == [4]
     assert MorphTarget.from_dense("lift", LIFT, still=0.99).vertices.tolist() == [1, 4]
+    assert MorphTarget.from_dense("lift", 1.3 * LIFT, still=1.5).vertices.tolist() == [4]
     assert len(MorphTarget.from_dense("lift", LIFT, still=9.0).vertices) == 0
 
 
