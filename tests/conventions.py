@@ -14,7 +14,7 @@ LONGEST_FILE = 400
 
 _ENTRY = r"(?:\.\.\.|\d+|[a-z]{1,2}|dimension|count|vertex_count|height|width)"
 _SUM = rf"{_ENTRY}(?: ?[+*-] ?{_ENTRY})*"
-SHAPE = re.compile(rf"\({_SUM}(?:, ?{_SUM})+,?\)|\({_SUM},\)")
+SHAPE = re.compile(rf"\({_SUM}(?:, ?{_SUM})+,?\)|\({_SUM},\)|\(\.\.\.\)")
 _ARRAY = re.compile(r"Array|ndarray")
 _REAL = re.compile(r"FloatArray|float64|float32")
 _WHOLE = re.compile(r"IntArray|int32|int64|integer")
@@ -195,8 +195,8 @@ def _function_rules(
         text = class_text
     elif not text:
         yield f"{where}: no docstring"
-    elif not text.splitlines()[0].rstrip().endswith((".", "?", ":", "``")) and "\n\n" not in text:
-        yield f"{where}: the docstring does not end its first sentence"
+    elif not text.split("\n\n")[0].rstrip().endswith((".", ":", "``")):
+        yield f"{where}: the docstring does not begin with a sentence"
     if node.name != "__init__":
         yield from _spelling(node.name, where, book)
     parameters = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]

@@ -180,6 +180,7 @@ _BREACHES = [
     ('"""A module."""\n', "", "the module has no docstring"),
     ('__all__ = ["Wobble", "wobble"]', "", "no __all__"),
     ('    """Move `positions` by `gain` (k,)."""\n', "", "wobble: no docstring"),
+    ("by `gain` (k,).", "by `gain` (k,)", "wobble: the docstring does not begin with a sentence"),
     ("`gain` (k,)", "`gain`", "wobble(gain): the docstring gives no shape"),
     ("radii, gains :", "radii :", "Wobble.gains: the docstring gives no shape"),
     ("(n,) float64", "float64", "Wobble.radii: the docstring gives no shape"),
@@ -225,7 +226,7 @@ def test_a_module_name_that_says_nothing_is_refused() -> None:
     assert "'utils'" in found[0]
 
 
-@pytest.mark.parametrize("text", ["(n,)", "(n, 3)", "(..., 3)", "(m + 1,)", "(2*k, 3)"])
+@pytest.mark.parametrize("text", ["(n,)", "(n, 3)", "(..., 3)", "(...)", "(m + 1,)", "(2*k, 3)"])
 def test_a_shape_is_recognised(text: str) -> None:
     assert SHAPE.fullmatch(text)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from risorius import _formats
 
 if TYPE_CHECKING:
+    from risorius.anatomy.template import builtin_head as builtin_head
     from risorius.controls.control import Control as Control
     from risorius.controls.control import Pose as Pose
     from risorius.errors import RisoriusError as RisoriusError
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from risorius.rig.face import Face as Face
     from risorius.rig.rig import MorphTarget as MorphTarget
     from risorius.rig.rig import Rig as Rig
+    from risorius.vectormuscle.face import VectorFace as VectorFace
+    from risorius.vectormuscle.face import VectorParameters as VectorParameters
 
 __version__ = "0.1.0"
 
@@ -33,6 +36,9 @@ _HOME = {
     "Rig": "risorius.rig.rig",
     "RisoriusError": "risorius.errors",
     "RisoriusWarning": "risorius.errors",
+    "VectorFace": "risorius.vectormuscle.face",
+    "VectorParameters": "risorius.vectormuscle.face",
+    "builtin_head": "risorius.anatomy.template",
 }
 
 __all__ = [
@@ -45,7 +51,10 @@ __all__ = [
     "Rig",
     "RisoriusError",
     "RisoriusWarning",
+    "VectorFace",
+    "VectorParameters",
     "__version__",
+    "builtin_head",
 ]
 
 # The formats announce themselves when their package is imported: on the first read or write.
