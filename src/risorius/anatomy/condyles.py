@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import cache
 from importlib.resources import as_file, files
 
+import numpy as np
+
 from risorius import _formats
 from risorius._check import FloatArray
 from risorius.anatomy.template import builtin_head, warp_between
@@ -26,9 +28,13 @@ def _builtin_skull_landmarks() -> LandmarkSet:
 
 
 def builtin_condyles() -> tuple[FloatArray, FloatArray]:
-    """Return the left and right condyle (3,) of the built-in skull [mm]."""
+    """Return the left and right condyle (3,) of the built-in skull, in the built-in head's
+    canonical frame [mm].
+    """
     marks = _builtin_skull_landmarks()
-    return marks.position("condyle_l"), marks.position("condyle_r")
+    # Skull and head are modelled in one space; the head's frame moves it to the eyes.
+    left, right = builtin_head().frame.to_canonical(marks.positions(("condyle_l", "condyle_r")))
+    return left, right
 
 
 def condyles(head: Head) -> tuple[FloatArray, FloatArray]:
@@ -41,5 +47,5 @@ def condyles(head: Head) -> tuple[FloatArray, FloatArray]:
         left, right = head.landmarks.positions(("condyle_l", "condyle_r"))
         return left - [_TISSUE, 0.0, 0.0], right + [_TISSUE, 0.0, 0.0]
     warp = warp_between(builtin_head().landmarks, head.landmarks)
-    left, right = warp(builtin_condyles())
+    left, right = warp(np.stack(builtin_condyles()))
     return left, right

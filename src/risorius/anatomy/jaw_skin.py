@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -15,8 +17,10 @@ from risorius.mesh.slit import line_lengths
 
 __all__ = ["jaw_share_inside", "jaw_share_of_skin"]
 
+Fix = Callable[[IntArray, float | FloatArray, float], None]
+
 # Ends of the lip lines over which lower and upper lip fade into the commissure.
-_FADE = 0.22
+_FADE = 0.3
 
 
 def jaw_share_of_skin(head: Head, lips: LipSides, hinge: FloatArray) -> FloatArray:
@@ -42,7 +46,7 @@ def jaw_share_of_skin(head: Head, lips: LipSides, hinge: FloatArray) -> FloatArr
     target = np.full(len(points), 0.5)
     hold = np.zeros(len(points))
 
-    def fix(where: FloatArray | IntArray, value: float | FloatArray, strength: float) -> None:
+    def fix(where: IntArray, value: float | FloatArray, strength: float) -> None:
         hold[where] = strength
         target[where] = value
 
@@ -68,7 +72,7 @@ def jaw_share_of_skin(head: Head, lips: LipSides, hinge: FloatArray) -> FloatArr
     fix(np.flatnonzero(body), 1.0, 1.0)
     philtrum = lips.upper & (lips.to_upper < 0.35 * width) & (middle < 0.3 * width) & ~lips.inside
     fix(np.flatnonzero(philtrum), 0.0, 1.0)
-    _fix_lining(head, lips, fix)
+    _fix_lining(lips, fix)
     for line, end in ((lips.slit.upper, 0.0), (lips.slit.lower, 1.0)):
         place = line_lengths(points, line)
         away = smooth_step(np.minimum(place, 1.0 - place) / _FADE)
@@ -83,23 +87,15 @@ def _ahead_of_lip(points: FloatArray, nose: FloatArray, width: float) -> FloatAr
     return (points[:, 1] > nose[1]) & (np.abs(points[:, 0] - nose[0]) < 0.45 * width)
 
 
-def _fix_lining(head: Head, lips: LipSides, fix: object) -> None:
-    """Let the lining of the mouth follow the teeth and tongue that it lies on."""
-    assert callable(fix)
-    points = head.skin.mesh.positions
+def _fix_lining(lips: LipSides, fix: Fix) -> None:
+    """Let the lining of the mouth follow the lip that it continues.
+
+    Teeth do not tell: upper incisors hang before the lower ones, the lining behind the lower lip
+    touches both.
+    """
     inside = np.flatnonzero(lips.inside)
     share = lips.share()[inside]
-    fix(inside, smooth_step(0.5 + 2.0 * (share - 0.5)), 0.02)
-    lower = _points_of(head, ("teeth_lower", "tongue"))
-    upper = _points_of(head, ("teeth_upper",))
-    if lower is None or upper is None or not len(inside):
-        return
-    to_lower = np.asarray(cKDTree(lower).query(points[inside])[0])
-    to_upper = np.asarray(cKDTree(upper).query(points[inside])[0])
-    reach = 0.25 * lips.width
-    near = np.minimum(to_lower, to_upper) < reach
-    follows = smooth_step(0.5 + (to_upper - to_lower) / (0.4 * reach))
-    fix(inside[near], follows[near], 0.5)
+    fix(inside, smooth_step(0.5 + 1.6 * (share - 0.5)), 0.3)
 
 
 def _points_of(head: Head, kinds: tuple[str, ...]) -> FloatArray | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, replace, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -143,9 +143,24 @@ class Rig:
             positions[target.vertices] += weight * target.deltas
         return positions
 
+    def with_targets(
+        self,
+        targets: Iterable[MorphTarget],
+        *,
+        controls: tuple[Control, ...] | None = None,
+        left_out: Mapping[str, str] | None = None,
+    ) -> Rig:
+        """Return the rig with other targets."""
+        return replace(
+            self,
+            targets=tuple(targets),
+            controls=self.controls if controls is None else controls,
+            left_out=self.left_out if left_out is None else left_out,
+        )
+
     def subset(self, names: Iterable[str]) -> Rig:
         """Return a rig with only the targets `names`, in that order."""
-        return replace(self, targets=tuple(self.target(name) for name in names))
+        return self.with_targets(self.by_name[name] for name in names)
 
     def save(self, path: str | Path) -> None:
         """Write the rig; the ending of `path` chooses the format.

@@ -1,0 +1,76 @@
+"""Bake: poses of any face become the morph targets of a rig."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from risorius.controls.control import Pose
+from risorius.head.head import Head
+from risorius.landmarks.landmark_set import Landmark, LandmarkSpec
+from risorius.rig.face import Face
+from risorius.rig.rig import MorphTarget, Rig
+
+__all__ = ["bake", "empty_rig"]
+
+# Motion below this is noise of the arithmetic and is left out of the targets [mm].
+_STILL = 1e-4
+
+Progress = Callable[[int, int, str], None]
+
+
+def bake(
+    face: Face,
+    poses: Mapping[str, Pose],
+    *,
+    left_out: Mapping[str, str] | None = None,
+    progress: Progress | None = None,
+) -> Rig:
+    """Evaluate `face` in every pose and collect the displacements.
+
+    Parameters
+    ----------
+    face : Face
+    poses : mapping of str to Pose
+        Target name -> pose, in the order of the rig's targets.
+    left_out : mapping of str to str, optional
+        Shapes that were asked for and cannot be made, with the reason; written into the rig.
+    progress : callable, optional
+        Called with (done, all, name) before each pose.
+
+    Returns
+    -------
+    Rig
+        In the input's frame, unit and vertex order; its neutral is the input bit for bit.
+    """
+    head = face.head
+    targets: list[MorphTarget] = []
+    for number, (name, pose) in enumerate(poses.items()):
+        if progress is not None:
+            progress(number, len(poses), name)
+        moved = face.displace(pose)
+        moved[(moved * moved).sum(axis=1) <= _STILL * _STILL] = 0.0
+        targets.append(
+            MorphTarget.from_dense(name, head.frame.vectors_to_input(moved), pose=pose)
+        )
+    return empty_rig(head).with_targets(
+        targets, controls=face.controls, left_out=dict(left_out or {})
+    )
+
+
+def empty_rig(head: Head) -> Rig:
+    """Return the rig of a head without targets: neutral, parts, landmarks, frame."""
+    part_of_vertex = np.full(head.vertex_count, -1, np.int32)
+    names = tuple(head.parts)
+    for number, kind in enumerate(names):
+        part_of_vertex[head.parts[kind].source] = number
+    landmarks = {name: _spec(mark, head) for name, mark in head.landmarks.items()}
+    return Rig(head.source, (), names, part_of_vertex, landmarks, head.frame)
+
+
+def _spec(mark: Landmark, head: Head) -> LandmarkSpec:
+    if len(mark.vertices) == 1:
+        return LandmarkSpec(vertex=mark.vertices[0], confidence=mark.confidence)
+    x, y, z = (float(value) for value in mark.at(head.source.positions))
+    return LandmarkSpec(position=(x, y, z), confidence=mark.confidence)

@@ -1,0 +1,163 @@
+"""The vector-muscle face: closed-form muscles on top of the shared mechanics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from risorius._check import FloatArray, one_of
+from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.regions import find_regions
+from risorius.anatomy.support import support_directions
+from risorius.controls.control import Control, Pose, resolve_pose
+from risorius.controls.standard import MUSCLES, SINGLE_MUSCLES, muscle_controls
+from risorius.head.head import Head
+from risorius.mesh.normals import vertex_normals
+from risorius.vectormuscle.combine import combine
+from risorius.vectormuscle.muscle import BoundMuscle, FaceContext
+from risorius.vectormuscle.profile import AngularProfile
+from risorius.vectormuscle.vector_set import VectorSet, default_vector_set
+
+__all__ = ["Profile", "VectorFace", "VectorParameters"]
+
+Profile = Literal["improved", "faithful"]
+
+
+@dataclass(frozen=True)
+class VectorParameters:
+    """Every difference between the profiles.
+
+    Parameters
+    ----------
+    angular : {"smooth", "published"}
+        Fall-off across a muscle (erratum E3).
+    steps : int
+        Small steps in which muscles act together.
+    support : float
+        Share of the inward motion that bone and teeth take away; 0 is the plain muscle.
+    """
+
+    angular: AngularProfile = "smooth"
+    steps: int = 8
+    support: float = 0.75
+
+    @staticmethod
+    def of_profile(profile: Profile) -> VectorParameters:
+        """Return the parameters of a named profile."""
+        one_of("profile", profile, ("improved", "faithful"))
+        if profile == "faithful":
+            return VectorParameters(angular="published", support=0.0)
+        return VectorParameters()
+
+
+@dataclass(frozen=True, eq=False)
+class VectorFace:
+    """Vector muscles bound to a head (`risorius.rig.Face`).
+
+    Parameters
+    ----------
+    head : Head
+    vectors : VectorSet
+        Fitted to the head.
+    mechanics : Mechanics
+    bound : mapping of str to BoundMuscle
+    controls : tuple of Control
+    outward : (w, 3) float64
+        Outward direction of what supports the skin.
+    parameters : VectorParameters
+    """
+
+    head: Head
+    vectors: VectorSet
+    mechanics: Mechanics
+    bound: Mapping[str, BoundMuscle]
+    controls: tuple[Control, ...]
+    outward: FloatArray
+    parameters: VectorParameters
+
+    @staticmethod
+    def build(
+        head: Head,
+        vectors: VectorSet | None = None,
+        *,
+        mechanics: Mechanics | None = None,
+        parameters: VectorParameters | None = None,
+    ) -> VectorFace:
+        """Fit a vector set to a head and compute every zone of influence.
+
+        Parameters
+        ----------
+        head : Head
+        vectors : VectorSet, optional
+            The default set if left out.
+        mechanics : Mechanics, optional
+            Already built for this head.
+        parameters : VectorParameters, optional
+
+        Raises
+        ------
+        LandmarkError
+            If the head lacks the landmarks of mouth, eyes and chin.
+        MeshError
+            If the lips are welded.
+        """
+        chosen = parameters or VectorParameters()
+        moving = mechanics or Mechanics.build(head)
+        fitted = (vectors or default_vector_set()).fitted(head)
+        mesh = head.skin.mesh
+        normals = vertex_normals(mesh.positions, mesh.faces)
+        regions = find_regions(head, moving.lips, dict(moving.margins))
+        context = FaceContext(mesh.positions, normals, moving, regions, chosen.angular)
+        bound = {muscle.name: muscle.bind(context) for muscle in fitted.muscles}
+        controls = _muscle_controls(tuple(bound)) + moving.controls
+        outward = support_directions(
+            mesh.positions, hinge=moving.jaw.hinge, face_height=head.height / 1.9
+        )
+        return VectorFace(head, fitted, moving, bound, controls, outward, chosen)
+
+    def displace_skin(self, values: Mapping[str, float]) -> FloatArray:
+        """Return the displacement (w, 3) [mm] of the welded skin by muscles alone."""
+        rest = self.head.skin.mesh.positions
+        active = [(muscle, values.get(name, 0.0)) for name, muscle in self.bound.items()]
+        moved = combine(active, rest, steps=self.parameters.steps)
+        if self.parameters.support:
+            inward = np.minimum((moved * self.outward).sum(axis=1), 0.0)
+            moved -= (self.parameters.support * inward)[:, None] * self.outward
+        return moved
+
+    def displace(self, pose: Pose) -> FloatArray:
+        """Return the displacement (n, 3) [mm, canonical frame] of every input vertex.
+
+        Raises
+        ------
+        ParameterError
+            If a control is unknown or not finite.
+        """
+        values = resolve_pose(self.controls, pose).values
+        return self.mechanics.pose(self.displace_skin(values), values)
+
+    def pose(self, pose: Pose) -> FloatArray:
+        """Return the posed positions (n, 3) [mm, canonical frame] of every input vertex."""
+        return self.head.positions + self.displace(pose)
+
+
+def _muscle_controls(names: tuple[str, ...]) -> tuple[Control, ...]:
+    """Return controls for the muscles of a set: registered ones first, in registry order."""
+    known = [
+        control
+        for base in (*MUSCLES, *SINGLE_MUSCLES)
+        for control in muscle_controls(base)
+        if control.name in names
+    ]
+    listed = {control.name for control in known}
+    own: list[Control] = []
+    for name in names:
+        if name in listed:
+            continue
+        other = name[:-2] + {"_l": "_r", "_r": "_l"}.get(name[-2:], name[-2:])
+        mirror = other if other in names else name
+        own.append(Control(name, 0.0, 1.0, 0.0, "1", "muscle", mirror))
+    return tuple(known + own)
