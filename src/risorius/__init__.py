@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from risorius.errors import RisoriusWarning as RisoriusWarning
     from risorius.head.head import Head as Head
     from risorius.head.head import HeadOptions as HeadOptions
+    from risorius.rig.bake import bake as bake
     from risorius.rig.face import Face as Face
     from risorius.rig.rig import MorphTarget as MorphTarget
     from risorius.rig.rig import Rig as Rig
@@ -38,6 +39,7 @@ _HOME = {
     "RisoriusWarning": "risorius.errors",
     "VectorFace": "risorius.vectormuscle.face",
     "VectorParameters": "risorius.vectormuscle.face",
+    "bake": "risorius.rig.bake",
     "builtin_head": "risorius.anatomy.template",
 }
 
@@ -54,6 +56,7 @@ __all__ = [
     "VectorFace",
     "VectorParameters",
     "__version__",
+    "bake",
     "builtin_head",
 ]
 

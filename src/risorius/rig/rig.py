@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -160,7 +160,7 @@ class Rig:
 
     def subset(self, names: Iterable[str]) -> Rig:
         """Return a rig with only the targets `names`, in that order."""
-        return self.with_targets(self.by_name[name] for name in names)
+        return self.with_targets(self.target(name) for name in names)
 
     def save(self, path: str | Path) -> None:
         """Write the rig; the ending of `path` chooses the format.
