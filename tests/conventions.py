@@ -12,7 +12,7 @@ REPOSITORY = Path(__file__).resolve().parent.parent
 SOURCE = REPOSITORY / "src" / "risorius"
 LONGEST_FILE = 400
 
-_ENTRY = r"(?:\.\.\.|\d+|[a-z]{1,2}|dimension|count|vertex_count|height|width)"
+_ENTRY = r"(?:\.\.\.|\d+|[a-z]{1,2}|dimension|count|vertex_count|height|width|rows|columns)"
 _SUM = rf"{_ENTRY}(?: ?[+*-] ?{_ENTRY})*"
 SHAPE = re.compile(rf"\({_SUM}(?:, ?{_SUM})+,?\)|\({_SUM},\)|\(\.\.\.\)")
 _ARRAY = re.compile(r"Array|ndarray")

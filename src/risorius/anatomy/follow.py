@@ -15,7 +15,7 @@ __all__ = ["Follower", "follow_skin"]
 
 @dataclass(frozen=True, eq=False)
 class Follower:
-    """Weighted skin vertices (k, s) that carry each of k vertices."""
+    """Skin `vertices` (k, s) and `weights` (k, s), rows summing to 1, that carry k vertices."""
 
     vertices: IntArray
     weights: FloatArray

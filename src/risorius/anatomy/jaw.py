@@ -101,7 +101,7 @@ class JawAxes:
 def jaw_axes(
     *, condyle_left: FloatArray, condyle_right: FloatArray, landmarks: LandmarkSet
 ) -> JawAxes:
-    """Set up the axes from the condyles (3,) each and the chin.
+    """Set up the axes from `condyle_left` (3,), `condyle_right` (3,) [mm] and the chin.
 
     The hinge runs through the condyles, not through MPEG-4's jaw corners 2.13 and 2.14, which
     the thesis names (erratum E20). Yaw turns about the upright through the middle of the

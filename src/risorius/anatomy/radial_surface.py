@@ -28,7 +28,7 @@ class RadialSurface:
 
     @staticmethod
     def of_mesh(mesh: TriMesh, centre: FloatArray, *, cells: int = 61) -> RadialSurface:
-        """Tabulate the front half of `mesh` by linear interpolation between its vertices."""
+        """Tabulate the front half of `mesh` about `centre` (3,), linear between its vertices."""
         arm = mesh.positions - centre
         radius = np.linalg.norm(arm, axis=1)
         front = arm[:, 2] > -0.35 * radius

@@ -133,7 +133,7 @@ class BoundField:
     field: FloatArray
 
     def displace(self, points: FloatArray, contraction: float) -> FloatArray:
-        """Return the field times contraction; `points` do not matter."""
+        """Return the field (k, 3) times contraction; `points` do not matter."""
         return contraction * self.field
 
 
