@@ -20,20 +20,17 @@ from risorius.anatomy.follow import Follower, follow_skin
 from risorius.anatomy.jaw import JawAxes, JawPose, jaw_axes
 from risorius.anatomy.jaw_skin import jaw_share_inside, jaw_share_of_skin
 from risorius.anatomy.lip_seal import lip_seal
-from risorius.anatomy.mouth import find_head_lips
 from risorius.anatomy.tongue import Tongue, build_tongue, tongue_in_gums
 from risorius.controls.control import Control
 from risorius.controls.standard import device_controls
-from risorius.errors import MeshError
+from risorius.head.eyes import find_head_lids
 from risorius.head.head import Head
+from risorius.head.mouth import find_head_lips
 from risorius.landmarks.sides import require
-from risorius.mesh.lids import LidMargins, find_lids
+from risorius.mesh.lids import LidMargins
 from risorius.mesh.lips import LipSides
 
-__all__ = ["EYE_LANDMARKS", "Mechanics"]
-
-EYE_LANDMARKS = {"l": ("3.11", "3.7", "3.1", "3.3"), "r": ("3.8", "3.12", "3.2", "3.4")}
-"""Inner corner, outer corner, upper and lower margin of each eye."""
+__all__ = ["Mechanics"]
 
 _SIDES = {"l": "left", "r": "right"}
 _REFERENCE_OPENING = 18.0
@@ -52,6 +49,8 @@ class Mechanics:
         How far each skin vertex follows the jaw.
     margins, lids, eyes : mapping of side to part
         Sides are ``"l"`` and ``"r"``; a missing eye is absent.
+    seal : (w, 3) float64
+        Displacement of the skin that closes the lips of the fully opened jaw [mm].
     notes : tuple of str
         What was left out, and why.
     """
@@ -94,7 +93,7 @@ class Mechanics:
             for side, name in _SIDES.items()
             if f"eye_{name}" in head.parts
         }
-        margins = _margins(head, notes)
+        margins = find_head_lids(head, notes=notes)
         lids = {
             side: build_eyelids(
                 mesh,
@@ -225,29 +224,6 @@ def _followers(head: Head, margins: Mapping[str, LidMargins]) -> dict[str, Follo
             slit = margins[side].slit
             only = np.union1d(slit.upper, slit.lower)
         result[kind] = follow_skin(part.mesh.positions, mesh, only=only)
-    return result
-
-
-def _margins(head: Head, notes: list[str]) -> dict[str, LidMargins]:
-    """Trace the lids of both eyes; an eye that cannot be traced is left out with a note."""
-    result: dict[str, LidMargins] = {}
-    for side, names in EYE_LANDMARKS.items():
-        missing = head.landmarks.missing(names)
-        if missing:
-            notes.append(
-                f"{_SIDES[side]} eyelids left out: landmarks {', '.join(missing)} are missing"
-            )
-            continue
-        inner, outer, upper, lower = (head.skin_vertex(name) for name in names)
-        try:
-            found = find_lids(head.skin.mesh, inner=inner, outer=outer, upper=upper, lower=lower)
-        except MeshError as error:
-            notes.append(f"{_SIDES[side]} eyelids left out: {error}")
-            continue
-        if found.height < 0.02 * found.width:
-            notes.append(f"{_SIDES[side]} eyelids left out: the eye is closed in the neutral head")
-            continue
-        result[side] = found
     return result
 
 
