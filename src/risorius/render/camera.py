@@ -161,7 +161,8 @@ class Camera:
         seen -= middle
         slope = float(np.tan(np.radians(fov) / 2.0)) / margin
         reach = np.maximum(np.abs(seen[:, 0]) / aspect, np.abs(seen[:, 1])) / slope
-        distance = float((seen[:, 2] + reach).max())
+        # Points in a row along the view have no size in the picture: keep off the first.
+        distance = float(max((seen[:, 2] + reach).max(), 1.2 * seen[:, 2].max()))
         target = middle @ frame
         if distance <= 1e-9 * (1.0 + float(np.abs(target).max())):
             distance = 1.0

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from risorius._check import FloatArray, as_number
 from risorius.errors import ParameterError, ShapeError
 
-__all__ = ["RGB", "display_rgb", "heat_colours", "heat_ramp", "linear_rgb"]
+__all__ = ["RGB", "display_rgb", "encode_srgb", "heat_colours", "heat_ramp", "linear_rgb"]
 
 RGB = tuple[float, float, float]
 
@@ -26,9 +26,13 @@ def linear_rgb(code: str) -> RGB:
 
 def display_rgb(linear: npt.ArrayLike) -> npt.NDArray[np.uint8]:
     """Return linear RGB (..., 3) in 0..1 as 8-bit sRGB."""
+    return np.rint(255.0 * encode_srgb(linear)).astype(np.uint8)
+
+
+def encode_srgb(linear: npt.ArrayLike) -> FloatArray:
+    """Return linear values (...,) as sRGB in 0..1; what lies outside 0..1 is cut off."""
     value = np.clip(np.asarray(linear, dtype=np.float64), 0.0, 1.0)
-    encoded = np.where(value <= 0.0031308, 12.92 * value, 1.055 * value ** (1 / 2.4) - 0.055)
-    return np.rint(255.0 * encoded).astype(np.uint8)
+    return np.where(value <= 0.0031308, 12.92 * value, 1.055 * value ** (1 / 2.4) - 0.055)
 
 
 # Clay to yellow, red and plum: zero looks like an unpainted head, shading shows everywhere.
@@ -41,7 +45,7 @@ _HEAT = np.array(
 
 
 def heat_ramp(steps: int = 256) -> FloatArray:
-    """Return the scale of `heat_colours` as (steps, 3) linear RGB, for `Surface.ramp`."""
+    """Return the scale of `heat_colours` as linear RGB (n, 3), n = `steps`, for `Surface.ramp`."""
     steps = int(as_number("steps", steps, low=2, high=4096))
     return _along(_HEAT, np.linspace(0.0, 1.0, steps))
 

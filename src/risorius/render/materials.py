@@ -25,14 +25,13 @@ class _Look:
     opacity: float = 1.0
 
 
+_FACE = ("skin", "head", "face", "body", "neck", "ear", "nose", "scalp", "bust")
+_AROUND_EYE = ("lid", "eyelid", "socket", "eyesocket")
+_SKIN = _Look((*_FACE, *_AROUND_EYE), "#d6a68f")
 # The first look with a stem that begins a word of the name decides, so the special come first.
 # Lashes are drawn thin: most heads have cards there that a texture would cut into hairs.
-_SKIN = _Look(
-    tuple("eyelid lid eyesocket socket skin head face body neck ear nose scalp bust".split()),
-    "#d6a68f",
-)
 _LOOKS = (
-    _Look(("lash", "eyelash", "cilia", "brow", "eyebrow"), "#2b211d", 0.0, 0.2, 0.12),
+    _Look(("lash", "eyelash", "cilia", "brow", "eyebrow"), "#2b211d", 0.0, 0.2, 0.07),
     _Look(("lip", "vermilion"), "#b9746a", 0.5, 0.4),
     _Look(("teeth", "tooth", "dent", "incisor", "molar", "canine"), "#e6dcc6", 0.6, 0.6),
     _Look(("gum", "gingiva"), "#b9706a", 0.6, 0.55),
@@ -96,8 +95,8 @@ def eye_paint(
 ) -> tuple[FloatArray, FloatArray]:
     """Paint pupil, iris and sclera on an eyeball that has no texture.
 
-    The place on the ramp is the angle from `forward`, seen from the centre of the sphere that
-    fits `positions` best, over 180 degrees.
+    The ramp runs along the angle from `forward`, seen from the centre of the sphere that fits
+    `positions` best, so that the iris is round however coarse the eyeball is.
 
     Parameters
     ----------
@@ -112,7 +111,7 @@ def eye_paint(
 
     Returns
     -------
-    colour : (n,) float64
+    colour : (n, 3) float64
     ramp : (k, 3) float64
         For `Surface`.
     """
@@ -125,8 +124,11 @@ def eye_paint(
     system = np.column_stack([2.0 * local, np.ones(len(local))])
     centre = np.linalg.lstsq(system, (local**2).sum(axis=1), rcond=None)[0][:3]
     ray = local - centre
-    cosine = ray @ (axis / np.linalg.norm(axis)) / np.maximum(np.linalg.norm(ray, axis=1), 1e-300)
-    colour = np.arccos(np.clip(cosine, -1.0, 1.0)) / np.pi
+    axis = axis / np.linalg.norm(axis)
+    aside = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    aside /= np.linalg.norm(aside)
+    colour = ray @ np.stack([aside, np.cross(axis, aside), axis], axis=1)
+    colour /= max(float(np.linalg.norm(colour, axis=1).max()), 1e-300)
 
     iris_degrees = as_number("iris_degrees", iris_degrees, low=1.0, high=80.0)
     pupil_degrees = as_number("pupil_degrees", pupil_degrees, low=0.0, high=iris_degrees)

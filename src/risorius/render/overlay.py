@@ -75,10 +75,21 @@ def draw_overlay(
     lift: float,
     scratch: Float32Array,
 ) -> None:
-    """Draw `overlay` upon `picture` (h, w, 3) in 0..255.
+    """Draw `overlay` upon `picture`.
 
-    `lift` [mm] pulls it to the front, so that points on a surface are not half buried in it;
-    `scratch` (h, w) is zero before and after.
+    Parameters
+    ----------
+    overlay : Overlay
+    camera : Camera
+    picture : (h, w, 3) float32
+        sRGB in 0..255.
+    inverse_depth : (i, j) float32
+        Of the opaque surfaces for each sample, i and j multiples of h and w [1/mm].
+    lift : float
+        How far the overlay is pulled to the front [mm], so that points on a surface are not
+        half buried in it.
+    scratch : (h, w) float32
+        Zero before and after.
     """
     height, width = scratch.shape
     ends = _clipped(overlay.strokes(), camera)

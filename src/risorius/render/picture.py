@@ -12,7 +12,7 @@ from risorius.errors import ParameterError, ShapeError
 from risorius.render.bands import in_bands
 from risorius.render.buffers import nearest, transparent_layers
 from risorius.render.camera import Camera, picture_size
-from risorius.render.colours import linear_rgb
+from risorius.render.colours import encode_srgb, linear_rgb
 from risorius.render.kernels.occlusion import occlude, reduce_depth, soften, spiral
 from risorius.render.kernels.shade import shade
 from risorius.render.lights import Lights
@@ -23,22 +23,14 @@ from risorius.render.surface import Surface
 __all__ = ["BACKDROP", "render"]
 
 BACKDROP: FloatArray = np.array([linear_rgb("#4b525c"), linear_rgb("#23262b")])
-"""Default background, top and bottom."""
+"""Default background, top and bottom (2, 3)."""
+BACKDROP.flags.writeable = False
 
 _TRANSPARENT_LAYERS = 6
 _OCCLUSION_SHARE = 0.05
 _LIFT_SHARE = 0.004
 _SPIRAL = spiral()
-
-
-def _encoding() -> FloatArray:
-    linear = np.linspace(0.0, 1.0, 4097)
-    return 255.0 * np.where(
-        linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055
-    )
-
-
-_SRGB = _encoding()
+_SRGB = 255.0 * encode_srgb(np.linspace(0.0, 1.0, 4097))
 
 
 def render(

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
-from threading import get_ident
 
 import numpy as np
 import numpy.typing as npt
 from PIL import Image, UnidentifiedImageError
 
 from risorius.errors import FormatError, ShapeError
+from risorius.io.atomic import atomic_write
 
 __all__ = ["as_image", "read_png", "write_png"]
 
@@ -34,16 +33,16 @@ def as_image(name: str, value: npt.ArrayLike) -> Uint8Array:
 
 
 def write_png(path: str | Path, image: npt.ArrayLike) -> None:
-    """Write `image` (h, w, 3) uint8 to `path`; the file appears complete or not at all."""
+    """Write `image` (h, w, 3) uint8 to `path`; the file appears complete or not at all.
+
+    Raises
+    ------
+    FormatError
+        If the folder is missing or the system refuses to write.
+    """
     picture = Image.fromarray(np.ascontiguousarray(as_image("image", image)))
-    target = Path(path)
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.{get_ident()}.tmp")
-    try:
-        with temporary.open("wb") as file:
-            picture.save(file, format="PNG", compress_level=6)
-        temporary.replace(target)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with atomic_write(path) as temporary:
+        picture.save(temporary, format="PNG", compress_level=6)
 
 
 def read_png(path: str | Path) -> Uint8Array:
@@ -52,13 +51,13 @@ def read_png(path: str | Path) -> Uint8Array:
     Raises
     ------
     FormatError
-        If the file is no PNG or broken.
+        If the file is missing, no PNG, or broken.
     """
     try:
         with Image.open(path, formats=["PNG"]) as picture:
             return np.asarray(picture.convert("RGB"), dtype=np.uint8)
     except FileNotFoundError:
-        raise
+        raise FormatError(f"{path}: no such file") from None
     except (UnidentifiedImageError, OSError, ValueError, SyntaxError) as error:
         raise FormatError(f"{path}: not a readable PNG file ({error}); export it again") from None
     except Image.DecompressionBombError as error:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from risorius._check import FloatArray, IntArray
 from risorius.render.camera import Camera
-from risorius.render.kernels.raster import accumulate_normals, prepare
+from risorius.render.kernels.raster import area_normals, prepare
 from risorius.render.surface import Surface
 
 __all__ = ["Scene", "gather"]
@@ -22,9 +22,37 @@ Float32Array = npt.NDArray[np.float32]
 class Scene:
     """All triangles, those of opaque surfaces first; see `kernels` for the conventions.
 
-    `order` gives the index of the caller's surface for each gathered one, `first_face` (s + 1,)
-    where its faces begin. `edges` (m, 9), `volume` (m,) and `box` (m, 4) place the triangles on
-    a picture of `size` samples; `normal_rows` and `colour_rows` (m, 3) point into the tables.
+    Parameters
+    ----------
+    size : (width, height)
+        Samples of the picture.
+    near : float
+        Depth before which nothing is drawn [mm].
+    diagonal : float
+        Of the box around all positions [mm].
+    order : (s,) int32
+        Index of the caller's surface for each gathered one.
+    first_face : (s + 1,) int32
+        Where the faces of each surface begin.
+    opaque_face_count : int
+    face_surface : (m,) int32
+        Gathered surface of each face.
+    edges : (m, 9) float64
+    volume : (m,) float64
+    box : (m, 4) int32
+        First and last column, first and last row that a face may cover.
+    normals : (k, 3) float64
+        Directions right, down, away; of any length.
+    normal_rows : (m, 3) int32
+        Row of `normals` for each corner.
+    colours : (c, 3) float64
+    colour_rows : (m, 3) int32
+        Row of `colours` for each corner.
+    ramps : (r, 3) float64
+        The ramps of all surfaces, one after the other.
+    materials : (s, 6) float64
+        Specular, gloss, opacity, whether plain, first row and size of the ramp, the size
+        negative where the colour is a vector.
     """
 
     size: tuple[int, int]
@@ -50,6 +78,8 @@ class Scene:
         return len(self.volume)
 
 
+# Triangles whose coordinates overflow are left out by `prepare`.
+@np.errstate(over="ignore", invalid="ignore")
 def gather(surfaces: Sequence[Surface], camera: Camera, size: tuple[int, int]) -> Scene:
     """Return `surfaces` as seen by `camera` on a picture of `size` = (width, height) samples."""
     order = sorted(range(len(surfaces)), key=lambda index: surfaces[index].opacity < 1.0)
@@ -72,7 +102,7 @@ def gather(surfaces: Sequence[Surface], camera: Camera, size: tuple[int, int]) -
     return Scene(
         size=size,
         near=camera.near,
-        diagonal=_diagonal(positions),
+        diagonal=_diagonal(positions[faces.ravel()]),
         order=np.array(order, np.int32),
         first_face=first_face,
         opaque_face_count=sum(len(s.faces) for s in drawn if s.opacity >= 1.0),
@@ -95,9 +125,10 @@ def _normals(surfaces: Sequence[Surface]) -> tuple[FloatArray, IntArray]:
     for surface in surfaces:
         if surface.smooth:
             own = surface.normals
+            # By area and compiled: `mesh.normals`, by angle, costs as much as half a picture.
             if own is None:
                 own = np.zeros_like(surface.positions)
-                accumulate_normals(surface.positions, surface.faces, own)
+                area_normals(surface.positions, surface.faces, own)
             tables.append(own)
             rows.append(surface.faces)
         else:
@@ -119,9 +150,11 @@ def _colours(
     for index, surface in enumerate(surfaces):
         colour = surface.colour_array
         if surface.ramp is not None:
-            table, own = np.repeat(colour[:, None], 3, axis=1), surface.faces
+            by_angle = colour.ndim == 2
+            table = colour if by_angle else np.repeat(colour[:, None], 3, axis=1)
+            own = surface.faces
             ramps.append(surface.ramp)
-            spans[index] = filled, len(surface.ramp)
+            spans[index] = filled, -len(surface.ramp) if by_angle else len(surface.ramp)
             filled += len(surface.ramp)
         elif colour.ndim == 1:
             table, own = colour[None], np.zeros_like(surface.faces)

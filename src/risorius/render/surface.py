@@ -26,9 +26,10 @@ class Surface:
         Vertex positions [mm].
     faces : (m, 3) array_like of int
         Triangles, counter-clockwise from outside; back faces are drawn darker.
-    colour : (3,), (n, 3) or (m, 3) array_like, or (n,) array_like with `ramp`
+    colour : (3,), (n, 3) or (m, 3) array_like, with `ramp` (n,) or (n, 3)
         Linear RGB in 0..1 of the whole, of each vertex, or of each face (vertices win where
-        n == m). With a `ramp`: the place of each vertex on it, in 0..1.
+        n == m). With a `ramp`: the place of each vertex on it, in 0..1; or a vector for each
+        vertex, whose angle from +Z over 180 degrees is the place.
     smooth : bool
         Interpolate vertex normals over the faces.
     specular : float
@@ -38,7 +39,8 @@ class Surface:
     opacity : float
         Below 1, what lies behind shines through; grazing parts are denser, as in thin glass.
     normals : (n, 3) array_like, optional
-        Vertex normals, used when `smooth`; default: computed from the faces.
+        Vertex normals, used when `smooth`; default: the mean over the faces
+        by area.
     ramp : (k, 3) array_like, optional
         Linear RGB that is looked up for each pixel, so that edges in it (the rim of an iris,
         a step of a scale) stay sharper than the mesh is fine.
@@ -83,15 +85,17 @@ class Surface:
     def _checked_colour(self) -> FloatArray:
         colour = np.ascontiguousarray(self.colour, dtype=np.float64)
         n, m = len(self.positions), len(self.faces)
-        allowed = [(n,)] if self.ramp is not None else [(3,), (n, 3), (m, 3)]
+        allowed = [(n,), (n, 3)] if self.ramp is not None else [(3,), (n, 3), (m, 3)]
         if colour.shape not in allowed:
             shapes = " or ".join(str(shape) for shape in allowed)
             raise ShapeError(f"colour: expected shape {shapes}, got {colour.shape}")
+        if self.ramp is not None and colour.ndim == 2:
+            return as_points("colour", colour)
         return _in_unit_range("colour", colour)
 
     @property
     def colour_array(self) -> FloatArray:
-        """The colour as an array of one of the documented shapes."""
+        """The colour as float64 of shape (3,), (n, 3), (m, 3) or, with a ramp, (n,)."""
         return np.asarray(self.colour, dtype=np.float64)
 
     @staticmethod

@@ -7,3 +7,5 @@ d = v0 . e0 is hit by the sample p = (column, row, 1) where all e_i . p have the
 inverse depth there is (e0 + e1 + e2) . p / d and its barycentric coordinates are the shares of
 the e_i . p. No triangle needs to be clipped: parts behind the eye have the wrong sign.
 """
+
+__all__ = []

@@ -21,7 +21,7 @@ _GAIN = 2.0
 _PIT = 1.5
 
 
-def spiral(taps=20, turns=7):
+def spiral(*, taps=20, turns=7):
     """Return (16, taps, 2): a spiral of taps within radius 1, in 16 turned positions."""
     share = (np.arange(taps) + 0.5) / taps
     angle = 2.0 * np.pi * (turns * share[None, :] + np.arange(16)[:, None] / 16.0)

@@ -7,12 +7,12 @@ import math
 import numpy as np
 from numba import njit
 
-__all__ = ["accumulate_normals", "fill", "prepare"]
+__all__ = ["area_normals", "fill", "prepare"]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def accumulate_normals(positions, faces, out):
-    """Add the area-weighted face normals to the vertices in `out` (n, 3)."""
+def area_normals(positions, faces, out):
+    """Write the unit sums of the doubled face areas around each vertex to `out` (n, 3), zeros."""
     for f in range(faces.shape[0]):
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
         x, y, z = positions[a, 0], positions[a, 1], positions[a, 2]
@@ -23,6 +23,12 @@ def accumulate_normals(positions, faces, out):
             out[k, 0] += nx
             out[k, 1] += ny
             out[k, 2] += nz
+    for k in range(out.shape[0]):
+        length = math.sqrt(out[k, 0] ** 2 + out[k, 1] ** 2 + out[k, 2] ** 2)
+        if length > 0.0:
+            out[k, 0] /= length
+            out[k, 1] /= length
+            out[k, 2] /= length
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -38,6 +44,11 @@ def prepare(view, faces, near, width, height, edges, volume, box):
         e[3], e[4], e[5] = cy * az - cz * ay, cz * ax - cx * az, cx * ay - cy * ax
         e[6], e[7], e[8] = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
         volume[f] = ax * e[0] + ay * e[1] + az * e[2]
+        if not math.isfinite(volume[f]):
+            # Coordinates so large that their products overflow: nothing to be drawn.
+            volume[f] = 0.0
+            box[f, 0], box[f, 1], box[f, 2], box[f, 3] = 0, -1, 0, -1
+            continue
         low_x = low_y = np.inf
         high_x = high_y = -np.inf
         for k in range(3):

@@ -17,10 +17,16 @@ _WRAP = 0.30
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _albedo(colours, rows, u, v, w, ramps, ramp_first, ramp_size):
-    """Return the blended colour, or the place on its ramp that the blended number names."""
+    """Return the blended colour, or the entry of its ramp that the blended numbers name.
+
+    A negative size says that they are a vector, and its angle from +Z the place.
+    """
     red, green, blue = blended(colours, rows, u, v, w)
     if ramp_size == 0:
         return red, green, blue
+    if ramp_size < 0:
+        ramp_size = -ramp_size
+        red = math.atan2(math.sqrt(red * red + green * green), blue) / math.pi
     place = min(max(red, 0.0), 1.0) * (ramp_size - 1)
     low = min(int(place), max(ramp_size - 2, 0))
     high = min(low + 1, ramp_size - 1)
