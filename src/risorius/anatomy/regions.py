@@ -16,8 +16,11 @@ from risorius.mesh.lips import LipSides
 
 __all__ = ["REGIONS", "Regions", "find_regions"]
 
-REGIONS = ("upper", "middle", "lower", "static")
-"""Brow and forehead; cheeks, nose and upper lip; lower lip and chin; what never moves."""
+REGIONS = ("upper", "middle", "lower", "nose", "static")
+"""Brow and forehead; cheeks and upper lip; lower lip and chin; nose; what never moves.
+
+The paper names the first three and the last; the nose is ours: it must not follow a smile.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,8 +29,8 @@ class Regions:
 
     Parameters
     ----------
-    weights : (n, 3) float64
-        Share of upper, middle and lower face; soft between them on the cheeks and at the eyes,
+    weights : (n, 4) float64
+        Share of upper, middle and lower face and nose; soft between them on the cheeks and at the eyes,
         and exactly 0 or 1 on the two lips.
     mobility : (n,) float64
         1 where muscles may act, 0 on static skin: back of the head, ears, lids (which have
@@ -77,7 +80,9 @@ def find_regions(head: Head, lips: LipSides, margins: dict[str, LidMargins]) -> 
     upper = smooth_step((points[:, 1] - (eyes - 0.02 * height)) / (0.1 * height))
     lower = _lower(lips)
     middle = 1.0 - np.maximum(upper, lower)
-    weights = np.stack([upper * (1.0 - lower), np.maximum(middle, 0.0), lower], axis=1)
+    nose = _nose(head, points, height) * (1.0 - lower) * ~lips.inside
+    others = np.stack([upper * (1.0 - lower), np.maximum(middle, 0.0), lower], axis=1)
+    weights = np.column_stack([others * (1.0 - nose)[:, None], nose])
     weights /= np.maximum(weights.sum(axis=1, keepdims=True), 1e-12)
     mobility = _ahead(head, points, height)
     for margin in margins.values():
@@ -95,6 +100,23 @@ def _lower(lips: LipSides) -> FloatArray:
     """Return the lower face: 0 on the whole upper side, 1 a little way into the lower one."""
     share = lips.share()
     return smooth_step((share - 0.5) / 0.12)
+
+
+def _nose(head: Head, points: FloatArray, height: float) -> FloatArray:
+    """Return how far (n,) a vertex belongs to the nose below its root."""
+    marks = head.landmarks
+    base = marks.position("9.15") if "9.15" in marks else marks.position("9.3") - [0, 0.09 * height, 0]
+    wings = (
+        marks.positions(("9.1", "9.2"))[:, 0]
+        if "9.1" in marks and "9.2" in marks
+        else base[0] + 0.16 * height * np.array([1.0, -1.0])
+    )
+    half = 0.5 * float(np.ptp(wings))
+    eyes = float(marks.positions(("3.11", "3.8"))[:, 1].mean())
+    beside = smooth_step(1.0 - (np.abs(points[:, 0] - wings.mean()) - 0.85 * half) / (0.5 * half))
+    above = smooth_step((points[:, 1] - base[1] + 0.04 * height) / (0.07 * height))
+    below = smooth_step((eyes - points[:, 1]) / (0.15 * height))
+    return beside * above * below
 
 
 def _ahead(head: Head, points: FloatArray, height: float) -> FloatArray:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from risorius._check import FloatArray, IntArray, as_number
+from risorius.anatomy.smooth_step import smooth_step
 from risorius.errors import ParameterError, RisoriusWarning
 from risorius.vectormuscle.muscle import (
     MIRROR,
@@ -47,6 +48,9 @@ class LinearMuscle:
         Regions it may move; empty for all.
     out : float
         Outward push at full effect, in pulls: tissue that bunches up.
+    corner : float
+        How far the muscle holds the mouth corner and lets the body of the lips lag: 0 pulls the
+        whole lip, 1 leaves its middle.
     """
 
     name: str
@@ -58,6 +62,7 @@ class LinearMuscle:
     strength: float = 1.0
     regions: tuple[str, ...] = ()
     out: float = 0.0
+    corner: float = 0.0
 
     def __post_init__(self) -> None:
         if float(np.linalg.norm(self.insertion - self.origin)) == 0.0:
@@ -127,6 +132,8 @@ class LinearMuscle:
         effect = self.influence(context.positions, smooth=context.angular == "smooth")
         if self.regions:
             effect = effect * context.regions.permission(self.regions)
+        if self.corner:
+            effect = effect * (1.0 - self.corner * _lip_body(context))
         effect = effect * context.regions.mobility
         vertices = np.flatnonzero(effect > 0.0).astype(np.int32)
         return BoundLinear(
@@ -147,8 +154,9 @@ class LinearMuscle:
         }
         if self.regions:
             entry["regions"] = list(self.regions)
-        if self.out:
-            entry["out"] = self.out
+        for key, value in (("out", self.out), ("corner", self.corner)):
+            if value:
+                entry[key] = value
         return entry
 
 
@@ -173,6 +181,16 @@ class BoundLinear:
         return result
 
 
+def _lip_body(context: FaceContext) -> FloatArray:
+    """Return how far (n,) a vertex belongs to the body of the lips: 1 in their middle."""
+    lips = context.mechanics.lips
+    corners = context.positions[list(lips.slit.corners)]
+    middle, half = corners[:, 0].mean(), 0.5 * lips.width
+    beside = np.abs(context.positions[:, 0] - middle) / half
+    near = smooth_step(1.0 - (lips.distance - 0.15 * lips.width) / (0.3 * lips.width))
+    return near * smooth_step((0.95 - beside) / 0.75)
+
+
 def _warn(message: str) -> None:
     warnings.warn(message, RisoriusWarning, stacklevel=4)
 
@@ -189,6 +207,7 @@ def _read(entry: Mapping[str, Any], where: str) -> LinearMuscle:
             ("half_angle", None),
             ("strength", 1.0),
             ("out", 0.0),
+            ("corner", 0.0),
         )
     }
     return LinearMuscle(
@@ -201,6 +220,7 @@ def _read(entry: Mapping[str, Any], where: str) -> LinearMuscle:
         number["strength"],
         tuple(regions),
         number["out"],
+        number["corner"],
     )
 
 
