@@ -133,3 +133,16 @@ def test_an_eye_without_a_direction_is_refused() -> None:
         eye_paint(ball(4).positions, forward=(0.0, 0.0, 0.0))
     with pytest.raises(ShapeError, match="at least 4 positions"):
         eye_paint(np.eye(3))
+    with pytest.raises(ShapeError, match="iris: expected shape"):
+        eye_paint(ball(4).positions, iris=(0.1, 0.2))
+    with pytest.raises(ParameterError, match="pupil_degrees: 30 is above 20"):
+        eye_paint(ball(4).positions, iris_degrees=20.0, pupil_degrees=30.0)
+
+
+@given(st.floats(1.0, 80.0), st.floats(0.0, 1.0))
+def test_every_iris_ends_in_white(iris_degrees: float, share: float) -> None:
+    _, ramp = eye_paint(
+        ball(4).positions, iris_degrees=iris_degrees, pupil_degrees=share * iris_degrees
+    )
+    outside = ramp[int(np.ceil((iris_degrees + 2.0) * 4))]
+    assert outside.min() > 0.4 and ramp.min() >= 0.0 and ramp.max() <= 1.0

@@ -129,20 +129,24 @@ def eye_paint(
     aside /= np.linalg.norm(aside)
     colour = ray @ np.stack([aside, np.cross(axis, aside), axis], axis=1)
     colour /= max(float(np.linalg.norm(colour, axis=1).max()), 1e-300)
+    return colour, _eye_ramp(iris, iris_degrees, pupil_degrees)
 
+
+def _eye_ramp(iris: npt.ArrayLike, iris_degrees: float, pupil_degrees: float) -> FloatArray:
+    """Return the colours over 0..180 degrees from the middle of the pupil, (721, 3)."""
     iris_degrees = as_number("iris_degrees", iris_degrees, low=1.0, high=80.0)
     pupil_degrees = as_number("pupil_degrees", pupil_degrees, low=0.0, high=iris_degrees)
-    tone = np.asarray(iris, dtype=np.float64)
-    white, black = np.array(linear_rgb("#eeeae4")), np.array(linear_rgb("#0b0a0a"))
-    edge = 1.2
-    middle = 0.55 * (pupil_degrees + iris_degrees)
-    pupil_stops = [0.0, pupil_degrees - edge, pupil_degrees + edge]
-    iris_stops = [middle, iris_degrees - 3.0 * edge, iris_degrees]
-    stops = np.array([*pupil_stops, *iris_stops, iris_degrees + edge, 100.0, 180.0])
-    rose = np.array(linear_rgb("#d9a79c"))
+    tone = as_points("iris", np.atleast_2d(iris))[0]
+    black, white, rose = (np.array(linear_rgb(c)) for c in ("#0b0a0a", "#eeeae4", "#d9a79c"))
+    soft = 1.2
+    middle = 0.5 * (pupil_degrees + iris_degrees)
+    pupil_stops = [0.0, pupil_degrees - soft, pupil_degrees + soft]
+    iris_stops = [middle, iris_degrees - 3.0 * soft, iris_degrees]
+    stops = np.array([*pupil_stops, *iris_stops, iris_degrees + soft, 100.0, 180.0])
     keys = np.stack(
         [black, black, 1.25 * tone, tone, 0.7 * tone, 0.2 * tone, white, rose, rose]
     ).clip(0.0, 1.0)
+    # Narrow irises have no room for all stops: those that would go back are passed over.
+    stops = np.maximum.accumulate(stops)
     grid = np.linspace(0.0, 180.0, 721)
-    ramp = np.stack([np.interp(grid, stops, keys[:, channel]) for channel in range(3)], axis=1)
-    return colour, ramp
+    return np.stack([np.interp(grid, stops, keys[:, channel]) for channel in range(3)], axis=1)
