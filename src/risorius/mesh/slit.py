@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix
@@ -26,6 +27,11 @@ __all__ = ["Slit", "edge_graph", "find_slit", "line_lengths", "opened_vertices"]
 _PREFERENCE = 0.4
 # The ends of a slit are looked for within this share of its width around their landmarks.
 _REACH = 0.3
+# Skin between the middles of the lines that is shorter than this share of the width joins them;
+# round a bag, a socket or the corners of a hole it is about as long as the slit is wide.
+_WELDED = 0.25
+# How much a millimetre away from its landmark counts when an end is looked for.
+_PULL = 0.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,8 +107,8 @@ def find_slit(
     Raises
     ------
     MeshError
-        If the corners are not connected, or both lines run through the same vertices because the
-        slit is closed (welded lips).
+        If the corners are not connected, or the slit is closed: both lines run through the same
+        vertices, or skin joins them (welded lips).
     """
     graph = edge_graph(mesh)
     up, down = opened_vertices(mesh)
@@ -111,19 +117,20 @@ def find_slit(
         raise MeshError("slit: its two corners are one point; check the landmarks of the corners")
     above = dijkstra(graph, indices=list(upper), min_only=True)
     below = dijkstra(graph, indices=list(lower), min_only=True)
+    _require_gap(float(above[lower[len(lower) // 2]]), width)
     on_upper = above < below
     ends = corners
     if exact_corners:
         up[:] = down[:] = False
     else:
-        ends = _commissures(mesh, graph, on_upper, corners)
+        ends = _commissures(mesh, graph, above, below, corners)
     upper_line = _trace(graph, [ends[0], *upper, ends[1]], prefer=down, allowed=on_upper)
     lower_line = _trace(graph, [ends[0], *lower, ends[1]], prefer=up, allowed=~on_upper)
     shared = np.intersect1d(upper_line[1:-1], lower_line[1:-1])
     if len(shared):
         raise MeshError(
-            f"slit: upper and lower line share vertex {int(shared[0])}; the lips are welded, "
-            "cut the mouth open along the lip line"
+            f"slit: upper and lower line share vertex {int(shared[0])}; they are welded, "
+            "cut the mesh open between them"
         )
     if exact_corners:
         up, down = opened_vertices(mesh)
@@ -132,6 +139,15 @@ def find_slit(
     loop[upper_line] = True
     loop[lower_line] = True
     return Slit(upper_line, lower_line, _inside(mesh, loop), float(confirmed.mean()))
+
+
+def _require_gap(across: float, width: float) -> None:
+    """Refuse a slit that skin closes: between its middles there is no way round a bag or a hole."""
+    if across < _WELDED * width:
+        raise MeshError(
+            f"slit: {across:.3g} mm of skin join the upper and the lower line (the slit is "
+            f"{width:.3g} mm wide); they are welded, cut the mesh open between them"
+        )
 
 
 def edge_graph(mesh: TriMesh) -> csr_matrix:
@@ -150,28 +166,26 @@ def edge_graph(mesh: TriMesh) -> csr_matrix:
 
 
 def _commissures(
-    mesh: TriMesh, graph: csr_matrix, on_upper: BoolArray, corners: tuple[int, int]
+    mesh: TriMesh, graph: csr_matrix, above: FloatArray, below: FloatArray, corners: tuple[int, int]
 ) -> tuple[int, int]:
     """Return the vertices where upper and lower side meet at the two ends of the slit.
 
     The border between the sides runs from each commissure outwards over the face and inwards
-    over the bag; the commissure is its point nearest to the middle of the slit.
+    over the bag; the commissure is its waist, the place nearest to both middles. `above` and
+    `below` (n,) are the distances to them [mm]; the landmark decides between like places.
     """
+    on_upper = above < below
     rows = np.repeat(np.arange(mesh.vertex_count), np.diff(graph.indptr))
     border = np.zeros(mesh.vertex_count, bool)
     border[rows[on_upper[rows] != on_upper[graph.indices]]] = True
     first, second = mesh.positions[list(corners)]
-    axis = (second - first) / np.linalg.norm(second - first)
     reach = _REACH * float(np.linalg.norm(second - first))
     result: list[int] = []
-    for corner, outwards in ((corners[0], -axis), (corners[1], axis)):
-        near = np.flatnonzero(border)
-        distance = np.linalg.norm(mesh.positions[near] - mesh.positions[corner], axis=1)
-        near = near[distance < reach]
-        if not len(near):
-            result.append(corner)
-            continue
-        result.append(int(near[np.argmin(mesh.positions[near] @ outwards)]))
+    for corner in corners:
+        off = np.linalg.norm(mesh.positions - mesh.positions[corner], axis=1)
+        near = np.flatnonzero(border & (off < reach))
+        cost = np.maximum(above, below)[near] + _PULL * off[near]
+        result.append(int(near[np.argmin(cost)]) if len(near) else corner)
     return result[0], result[1]
 
 
@@ -186,7 +200,7 @@ def _trace(
     cost = np.where(closed[rows] | closed[graph.indices], cost * 1e4, cost)
     weighted = csr_matrix((cost, graph.indices, graph.indptr), shape=graph.shape)
     line: list[int] = [stops[0]]
-    for start, goal in zip(stops[:-1], stops[1:]):
+    for start, goal in pairwise(stops):
         _, before = dijkstra(weighted, indices=start, return_predecessors=True)
         if start != goal and before[goal] < 0:
             raise MeshError(
