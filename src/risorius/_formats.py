@@ -30,7 +30,10 @@ ReadLandmarks = Callable[[Path], Mapping[str, Any]]
 
 @dataclass(frozen=True)
 class Format:
-    """One file format: its endings and what can be read and written."""
+    """One file format: its endings and what can be read and written.
+
+    `read_folder` takes a folder, whatever its name ends in.
+    """
 
     name: str
     endings: tuple[str, ...]
@@ -38,6 +41,7 @@ class Format:
     read_rig: ReadRig | None = None
     write_rig: WriteRig | None = None
     read_landmarks: ReadLandmarks | None = None
+    read_folder: ReadRig | None = None
 
 
 _FORMATS: list[Format] = []
@@ -92,7 +96,10 @@ def read_head(path: Path) -> tuple[Any, Mapping[str, Any]]:
 
 
 def read_rig(path: Path) -> Any:
-    """Read a `Rig`."""
+    """Read a `Rig` from a file or a folder of files."""
+    if path.is_dir():
+        readers = (file_format.read_folder for file_format in formats())
+        return next(reader for reader in readers if reader is not None)(path)
     return _find(path, "read_rig")(_existing(path))
 
 

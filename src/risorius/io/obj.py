@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 import warnings
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from itertools import chain, groupby
 from pathlib import Path
 
@@ -22,7 +22,7 @@ from risorius.io.obj_corners import NO_UV, OUT_OF_RANGE, Corners, LongArray, rea
 from risorius.landmarks.landmark_set import LandmarkSpec
 from risorius.mesh.polygon_mesh import Labels, PolygonMesh
 
-__all__ = ["parse_obj", "read_obj"]
+__all__ = ["parse_obj", "read_obj", "read_obj_positions"]
 
 _LIMIT = 256 * MEGABYTE
 _BLOCK = 1 << 16  # lines parsed at a time, so that hostile files cannot fill the memory
@@ -54,17 +54,38 @@ def read_obj(path: str | Path) -> tuple[PolygonMesh, dict[str, LandmarkSpec]]:
     return parse_obj(read_bytes_limited(path, limit=_LIMIT), str(path)), {}
 
 
+def read_obj_positions(path: str | Path) -> FloatArray:
+    """Read the vertices (n, 3) of an OBJ file and nothing else.
+
+    Raises
+    ------
+    FormatError
+        If a vertex line is malformed.
+    """
+    reader = _Reader(str(path))
+    data = read_bytes_limited(path, limit=_LIMIT)
+    for keyword, block, line in _blocks(data, str(path)):
+        if keyword == b"v":
+            reader.read(keyword, block, line)
+    return reader.positions()
+
+
 def parse_obj(data: bytes, where: str) -> PolygonMesh:
     """Return the mesh in the text `data`; `where` opens every message."""
     reader = _Reader(where)
-    lines = _lines(data, where)
+    for keyword, block, line in _blocks(data, where):
+        reader.read(keyword, block, line)
+    return reader.mesh()
+
+
+def _blocks(data: bytes, where: str) -> Iterator[tuple[bytes, list[bytes], int]]:
+    """Yield keyword, consecutive lines that begin with it, and the number of the first."""
     number = 1
-    for keyword, run in groupby(lines, key=_keyword):
+    for keyword, run in groupby(_lines(data, where), key=_keyword):
         block = list(run)
         for start in range(0, len(block), _BLOCK):
-            reader.read(keyword, block[start : start + _BLOCK], number + start)
+            yield keyword, block[start : start + _BLOCK], number + start
         number += len(block)
-    return reader.mesh()
 
 
 def _lines(data: bytes, where: str) -> list[bytes]:
@@ -119,9 +140,13 @@ class _Reader:
                 "correct or remove the line"
             )
 
-    def mesh(self) -> PolygonMesh:
+    def positions(self) -> FloatArray:
         if not self._counts[b"v"]:
             raise FormatError(f"{self._where}: has no vertices ('v' lines); is it an OBJ file?")
+        return np.concatenate(self._positions)
+
+    def mesh(self) -> PolygonMesh:
+        positions = self.positions()
         if self._left_out:
             listed = ", ".join(f"{n} '{keyword}'" for keyword, n in self._left_out.items())
             warnings.warn(
@@ -134,7 +159,7 @@ class _Reader:
         self._require_range(corners.uvs, corners, self._counts[b"vt"], "texture coordinate")
         has_uvs = bool((corners.uvs != NO_UV).any())
         return PolygonMesh(
-            np.concatenate(self._positions),
+            positions,
             corners.vertices.astype(np.int32),
             np.concatenate([[0], np.cumsum(corners.sizes)]).astype(np.int32),
             uvs=np.concatenate(self._uvs) if self._uvs else np.zeros((0, 2)),

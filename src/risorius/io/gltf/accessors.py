@@ -46,7 +46,8 @@ class _Layout:
         """Return raw components as float64, normalised integers in -1..1."""
         values = raw.astype(np.float64)
         if self.normalised and self.dtype.kind in "iu":
-            values = np.maximum(values / np.iinfo(self.dtype).max, -1.0)
+            bits = 8 * self.dtype.itemsize - (self.dtype.kind == "i")
+            values = np.maximum(values / (2.0**bits - 1.0), -1.0)
         return values
 
 

@@ -201,4 +201,3 @@ def _chunks(data: bytes, path: Path) -> dict[bytes, bytes]:
 def optional_index(fields: Fields, key: str) -> int | None:
     """Return the index in `key`, or None where it is absent."""
     return fields.integer(key) if key in fields else None
-

@@ -122,9 +122,7 @@ def _rotation(node: Fields) -> FloatArray:
     )
 
 
-def _rest_of_skin(
-    document: Document, node: Fields, matrices: dict[int, FloatArray]
-) -> FloatArray:
+def _rest_of_skin(document: Document, node: Fields, matrices: dict[int, FloatArray]) -> FloatArray:
     """Return where the skeleton holds a mesh at rest.
 
     In the rest pose every joint carries the mesh to the same place, so one joint tells it.

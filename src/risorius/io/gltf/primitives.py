@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,9 +76,7 @@ def _piece(document: Document, placed: Placed, primitive: Fields, mode: int) -> 
     attributes = primitive.fields("attributes")
     if "POSITION" not in attributes:
         raise FormatError(f"{attributes.where}: has no POSITION")
-    own = read_floats(
-        document, attributes.value["POSITION"], attributes.place("POSITION"), width=3
-    )
+    own = read_floats(document, attributes.value["POSITION"], attributes.place("POSITION"), width=3)
     linear = placed.matrix[:3, :3]
     with np.errstate(over="ignore", invalid="ignore"):
         positions = own @ linear.T + placed.matrix[:3, 3]
@@ -170,18 +168,20 @@ def _targets(
     return result
 
 
-def _target_names(mesh: Fields, primitive: Fields, count: int) -> Sequence[str]:
+def _target_names(mesh: Fields, primitive: Fields, count: int) -> tuple[str, ...]:
     """Return `count` different names; those that the file lacks are ``target_0``, ..."""
     named = "targetNames"
     owner = mesh if named in mesh.fields("extras") else primitive
     given = owner.fields("extras").texts(named)[:count]
     given += [f"target_{index}" for index in range(len(given), count)]
-    used: set[str] = set()
-    for index, name in enumerate(given):
-        if name in used:
-            given[index] = f"{name}_{index}"
-        used.add(given[index])
-    return given
+    names: dict[str, None] = {}
+    for name in given:
+        unique, repeats = name, 1
+        while unique in names:
+            repeats += 1
+            unique = f"{name}_{repeats}"
+        names[unique] = None
+    return tuple(names)
 
 
 def _require_count(document: Document, index: object, where: str, count: int) -> None:
