@@ -30,16 +30,17 @@ def _skin_part(half):
     groups = skin_groups(half)
     uvs, uv_polygons = skin_uvs(half, groups)
     positions, polygons, image = mirror_half(half.positions, half.polygons)
+    materials = 2 * skin_materials(half, groups)
     groups = groups + [group.replace("left", "right") for group in groups]
     # polygons of one group follow each other, so that the file stays readable
-    order = sorted(range(len(polygons)), key=lambda k: groups[k])
+    order = sorted(range(len(polygons)), key=lambda k: (groups[k], materials[k]))
     groups = [groups[k] for k in order]
     part = Part(
         "skin",
         positions,
         [polygons[k] for k in order],
         groups,
-        skin_materials(groups),
+        [materials[k] for k in order],
         uvs,
         [uv_polygons[k] for k in order],
     )

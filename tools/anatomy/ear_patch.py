@@ -11,15 +11,16 @@ from .topology import border_loops, half_edges, largest_component
 
 __all__ = ["EAR_TRIANGLES", "cut_patch", "decimate_patch"]
 
-# oval around the auricle in the side view: centre and radii (z, y) [mm]
-_OVAL_CENTRE, _OVAL_RADII = (-17.5, -21.5), (25.0, 41.0)
+# oval around the auricle in the side view: centre and radii (z, y) [mm], lean [rad]
+_OVAL_CENTRE, _OVAL_RADII, _OVAL_LEAN = (-15.0, -22.0), (23.5, 41.0), np.radians(12.0)
 EAR_TRIANGLES = 800
 
 
 def cut_patch(positions, faces):
     """Return the faces (k, 3) of the half head inside the oval, with a clean single border."""
     centre = positions[faces].mean(axis=1)
-    side = (centre[:, [2, 1]] - _OVAL_CENTRE) / _OVAL_RADII
+    cos, sin = np.cos(_OVAL_LEAN), np.sin(_OVAL_LEAN)
+    side = (centre[:, [2, 1]] - _OVAL_CENTRE) @ np.array([[cos, -sin], [sin, cos]]) / _OVAL_RADII
     patch = faces[((side**2).sum(axis=1) < 1) & (centre[:, 0] > 45)]
     patch = largest_component(patch, len(positions))
     for _ in range(6):  # trim corner triangles that hang on by one edge

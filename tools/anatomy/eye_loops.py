@@ -11,8 +11,9 @@ from .table import EYE_CENTRE, EYE_RADIUS, LID_INNER, LID_LOWER, LID_OUTER, LID_
 __all__ = ["CREASE_ROW", "EYE_COLUMNS", "eye_loops"]
 
 EYE_COLUMNS = 30
-_OFFSETS = (1.2, 2.9, 5.2, 8.2)
+_OFFSETS = (1.2, 2.9, 5.2, 8.0, 11.2)
 CREASE_ROW = 3
+_CARUNCLE = 3.0
 
 
 def _margin_arc(t, height, lean, roundness):
@@ -53,6 +54,12 @@ def _tucked(margin, outward):
     distance = np.linalg.norm(offset, axis=1)
     touching = np.maximum(EYE_RADIUS + 0.25, distance - 1.5)
     edge = EYE_CENTRE + offset / distance[:, None] * touching[:, None]
+    # at the inner corner the skin runs on to the eyeball as the caruncle
+    column = np.arange(len(margin))
+    from_corner = np.minimum(column, len(margin) - column)
+    shift = _CARUNCLE * np.exp(-((from_corner / 1.6) ** 2))
+    lid = edge + shift[:, None] * np.array([1.0, 0.0, 0.3])
+    edge = EYE_CENTRE + _unit(lid - EYE_CENTRE) * touching[:, None]
     behind = edge - EYE_CENTRE
     behind[:, :2] += 1.8 * outward
     behind[:, 2] -= 1.2
@@ -67,8 +74,8 @@ def eye_loops():
     scale = 0.6 + 0.4 * np.clip(along / 0.35, 0.0, 1.0)
     outer = [lift(margin)]
     outer += [lift(margin + outward * (offset * scale)[:, None]) for offset in _OFFSETS]
-    # the crease of the upper lid: pull the rows in where the lid faces up
+    # the crease of the upper lid runs along one row, the lid bulges below it
     upward = np.clip(outward[:, 1], 0.0, 1.0) * np.sin(np.pi * np.clip(along, 0.0, 1.0)) ** 0.5
-    for row, depth in ((2, 0.1), (CREASE_ROW, 1.0)):
+    for row, depth in ((CREASE_ROW, 1.0), (2, -0.2)):
         outer[row] = outer[row] - gradient(outer[row]) * (depth * upward)[:, None]
     return Loops(outer, _tucked(outer[0], outward), closed=True)

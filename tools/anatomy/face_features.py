@@ -12,27 +12,26 @@ def add_nose(points, skin):
     """Join bridge, tip, wings and columella to `skin` (n,), then carve the nostril."""
     bridge = tube(
         points,
-        [(0, 9, 87.8, 6.5), (0, -3, 88.2, 5.8), (0, -16, 93.4, 5.6), (0, -27, 100.4, 6.2),
-         (0, -36, 103.8, 7.2)],
+        [(0, 10, 88, 6.2), (0, 0, 88.5, 5.0), (0, -12, 93, 5.0), (0, -24, 99.5, 5.6),
+         (0, -34, 103.5, 6.8)],
         30,
     )  # fmt: skip
     side = tube(
-        points, [(5, -2, 80, 5), (7.5, -14, 83, 7.5), (8, -27, 89, 9), (7.5, -36, 94, 9.5)], 16
+        points, [(5, 0, 81, 4.2), (6.2, -12, 83, 5.5), (8, -24, 87.5, 7.5), (10, -35, 92.5, 9)], 16
     )
-    skin = union(skin, union(bridge, side, 9), 10)
-    tip = ellipsoid(points, (0, -38.4, 104.6), (8.5, 7.8, 7.6))
-    tip = union(tip, ellipsoid(points, (4.2, -38.8, 106), (5.2, 5.4, 5.6)), 5)
-    wing = ellipsoid(points, (12.2, -41.8, 96), (5.6, 6.8, 8.6), rotation(0, 20, 0))
+    skin = union(skin, union(bridge, side, 9), 13)
+    tip = ellipsoid(points, (0, -39, 104.6), (8, 7.4, 7.8))
+    tip = union(tip, ellipsoid(points, (4, -39.4, 106), (4.8, 5, 5.2)), 5)
+    wing = ellipsoid(points, (12.4, -41.2, 96.2), (5.2, 6.2, 8.4), rotation(12, 22, 0))
     tip = union(tip, wing, 5)
-    columella = tube(points, [(0, -43.5, 105, 3), (0, -46.5, 100, 3.2), (0, -48, 94, 3.5)], 10)
+    columella = tube(points, [(0, -44.5, 105, 3), (0, -47.8, 100.5, 3), (0, -49.5, 95, 4)], 10)
     skin = union(skin, union(tip, columella, 3.5), 6.5)
     nostril = tube(
         points,
-        [(5.6, -48.6, 103.5, 1.3), (7, -47.4, 100.5, 2.5), (8.6, -46.4, 97, 2.3),
-         (7.6, -40, 96, 1.8)],
+        [(6.2, -51, 101.5, 1.6), (7.2, -47.6, 99.6, 2.7), (7.8, -43, 98.2, 2.6), (6.5, -36, 97, 1.6)],
         12,
-    )  # fmt: skip
-    return cut(skin, -nostril, 1.8)
+    )
+    return cut(skin, -nostril, 1.6)
 
 
 def add_lips(points, skin):
@@ -57,5 +56,5 @@ def add_lips(points, skin):
 def add_lids(points, skin):
     """Join the bulge of the closed lids to `skin` (n,) and hollow the inner corner."""
     lid = ellipsoid(points, EYE_CENTRE + (0.3, -0.2, 0.2), (18, 13.8, 14.1))
-    skin = union(skin, lid, 4)
-    return cut(skin, -ellipsoid(points, (13.8, -0.5, 91), (4.2, 8, 6)), 8)
+    skin = union(skin, lid, 5)
+    return cut(skin, -ellipsoid(points, (13.8, -1.5, 91), (3.6, 7, 5.4)), 8)

@@ -17,6 +17,7 @@ from .ear_patch import cut_patch, decimate_patch
 from .fields import polygon
 from .marching import half_surface
 from .projecting import project, slide
+from .recover import recover_edges
 from .remesh import collapse_short, flip_edges
 from .sampling import Samples, border_samples, poisson_pick, ring_samples
 from .size_field import edge_length
@@ -36,7 +37,7 @@ class Fill:
     Parameters
     ----------
     positions : (n, 3) ndarray
-        The outermost row of the mouth, then that of the eye, then the rest [mm].
+        The outermost row of the mouth, then the closed rings, then the rest [mm].
     faces : (m, 3) int ndarray
     in_ear : (m,) bool ndarray
         Faces of the auricle's patch.
@@ -84,12 +85,16 @@ def _free_vertices(dense, disc, fixed, rings):
     return poisson_pick(positions, np.flatnonzero(usable))
 
 
-def _triangulate(disc, rings):
-    """Return the Delaunay triangles of `disc` (n, 2), counter-clockwise, without the rings."""
+def _triangulate(disc, rings, locked):
+    """Return the Delaunay triangles of `disc` (n, 2), counter-clockwise, without the rings.
+
+    The edges `locked` (k, 2) are among them.
+    """
     faces = Delaunay(disc).simplices.astype(int)
     corner = disc[faces]
     area = _cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     faces = np.where(area[:, None] > 0, faces, faces[:, ::-1])[np.abs(area) > 1e-14]
+    faces = recover_edges(faces, disc, locked)
     centre = disc[faces].mean(axis=1)
     keep = np.ones(len(faces), bool)
     for ring, _ in rings:
@@ -122,13 +127,15 @@ def _relax(positions, faces, free, locked):
     return positions, faces
 
 
-def fill_skin(mouth_row, eye_row, landmarks):
+def fill_skin(mouth_row, closed_rings, landmarks):
     """Return the free part of the left half of the skin.
 
     Parameters
     ----------
-    mouth_row, eye_row : (c, 3) ndarray
-        Outermost rows of the loops [mm].
+    mouth_row : (c, 3) ndarray
+        Outermost row of the mouth [mm].
+    closed_rings : list of (c, 3) ndarray
+        Outermost rows of closed loops; what lies inside of them is left out [mm].
     landmarks : (k, 3) ndarray
         Places that must become vertices; on the midline where x = 0 [mm].
     """
@@ -139,22 +146,30 @@ def fill_skin(mouth_row, eye_row, landmarks):
     span = (mouth_row[-1, 1], mouth_row[0, 1])
     edge = border_samples(positions, disc, border, mouth_span=span, landmarks=landmarks[middle])
     anchors = project(landmarks[~middle])
-    mouth_disc, eye_disc, anchor_disc = (
-        _on_disc(dense, disc, points) for points in (mouth_row, eye_row, anchors)
+    mouth_disc, anchor_disc, *ring_discs = (
+        _on_disc(dense, disc, points) for points in (mouth_row, anchors, *closed_rings)
     )
     mouth_disc[[0, -1]] /= np.linalg.norm(mouth_disc[[0, -1]], axis=1)[:, None]
     patch = cut_patch(positions, faces)
     ear_ring = ring_samples(positions, border_loops(patch)[0])
     fixed = Samples(
-        np.vstack([mouth_row, eye_row, edge.positions, anchors, positions[ear_ring]]),
-        np.vstack([mouth_disc, eye_disc, edge.disc, anchor_disc, disc[ear_ring]]),
+        np.vstack([mouth_row, *closed_rings, edge.positions, anchors, positions[ear_ring]]),
+        np.vstack([mouth_disc, *ring_discs, edge.disc, anchor_disc, disc[ear_ring]]),
     )
-    rings = [(mouth_disc, False), (eye_disc, True), (disc[ear_ring], True)]
+    rings = [(mouth_disc, False), *((r, True) for r in ring_discs), (disc[ear_ring], True)]
     picked = _free_vertices(dense, disc, fixed, rings)
-    start = len(mouth_row) + len(eye_row)
+    starts = np.cumsum([0, len(mouth_row), *map(len, closed_rings)])
+    start = starts[-1]
     ear_start = len(fixed) - len(ear_ring)
     points = np.vstack([fixed.positions, positions[picked]])
-    triangles = _triangulate(np.vstack([fixed.disc, disc[picked]]), rings)
+    locked = np.vstack(
+        [
+            _ring_edges(0, len(mouth_row), closed=False),
+            *(_ring_edges(at, len(r), closed=True) for at, r in zip(starts[1:], closed_rings)),
+            _ring_edges(ear_start, len(ear_ring), closed=True),
+        ]
+    )
+    triangles = _triangulate(np.vstack([fixed.disc, disc[picked]]), rings, locked)
     corner = disc[faces]
     if np.median(_cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])) < 0:
         triangles = triangles[:, ::-1].copy()
@@ -167,13 +182,6 @@ def fill_skin(mouth_row, eye_row, landmarks):
     ear_vertices = len(points)
     points = np.vstack([points, ear_positions[len(ear_ring) :]])
     faces = np.vstack([triangles, renumber[ear_faces]])
-    locked = np.vstack(
-        [
-            _ring_edges(0, len(mouth_row), closed=False),
-            _ring_edges(len(mouth_row), len(eye_row), closed=True),
-            _ring_edges(ear_start, len(ear_ring), closed=True),
-        ]
-    )
     _require_edges(faces, locked, len(points))
     free = np.zeros(len(points), bool)
     free[ear_start:ear_vertices] = True

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .eye_loops import CREASE_ROW
+from .eye_loops import CREASE_ROW, EYE_COLUMNS
 from .mouth_loops import BAG_FIRST_ROW, BORDER_ROW, COLUMNS_PER_LIP
 
 __all__ = ["skin_groups", "skin_materials"]
@@ -12,6 +12,8 @@ __all__ = ["skin_groups", "skin_materials"]
 # upper border of the neck and lower border of the scalp: z, y in the side view [mm]
 _NECK = ((-70, -20, 0, 15, 35, 60, 80), (-52, -56, -70, -90, -106, -114, -117))
 _SCALP = ((-60, -35, -20, 0, 20, 45, 62, 80), (-40, -40, 15, 22, 34, 50, 66, 79))
+# columns on each side of the inner corner of the eye that show the caruncle
+_CARUNCLE_COLUMNS = 2
 _MATERIALS = {"mouth_bag": "mouth", "vermilion_upper": "lips", "vermilion_lower": "lips"}
 
 
@@ -55,6 +57,14 @@ def skin_groups(half):
     return groups
 
 
-def skin_materials(groups):
-    """Return the material of every polygon by its group."""
-    return [_MATERIALS.get(group, "skin") for group in groups]
+def skin_materials(half, groups):
+    """Return the material of every polygon of the left half."""
+    materials = [_MATERIALS.get(group, "skin") for group in groups]
+    for index, kind in enumerate(half.kind):
+        if kind == "brow":
+            materials[index] = "brow"
+        elif kind == "eye" and half.band[index] >= half.eye_margin:
+            column = half.column[index]
+            if min(column + 1, EYE_COLUMNS - column) <= _CARUNCLE_COLUMNS:
+                materials[index] = "caruncle"
+    return materials

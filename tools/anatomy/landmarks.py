@@ -54,6 +54,16 @@ def _lids(half):
     }
 
 
+def _brow(half):
+    """Return eyebrow landmarks of the left half."""
+    start, eyebrow = half.brow_start, half.brow
+    return {
+        "4.1": start + eyebrow.inner_end,
+        "4.3": start + eyebrow.top,
+        "4.5": start + eyebrow.outer_end,
+    }
+
+
 def _tongue():
     """Return vertex numbers inside the tongue."""
     row, quarter = TONGUE_ROWS - 6, TONGUE_COLUMNS // 4
@@ -93,7 +103,7 @@ def head_landmarks(parts, half, image):
     ears = np.unique(
         np.concatenate([p for p, k in zip(half.polygons, half.kind) if k == "ear"])
     )
-    left = {**_mouth(half), **_lids(half)}
+    left = {**_mouth(half), **_lids(half), **_brow(half)}
     midline = np.flatnonzero(half.positions[:, 0] == 0.0)
     for name, place in SKIN_PLACES.items():
         left[name] = _nearest(half.positions, place, midline if place[0] == 0 else None)

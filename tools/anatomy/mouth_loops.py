@@ -18,8 +18,8 @@ BORDER_ROW = len(_VERMILION_ROWS)
 # rows outside of the border [mm]
 _SKIN_ROWS = (2.3, 5.2, 8.8)
 # height of the vermilion from the slit by x / half width: upper, lower [mm]
-_UPPER = ((0.0, 0.2, 0.5, 0.8, 1.0), (7.0, 7.6, 5.8, 3.6, 2.8))
-_LOWER = ((0.0, 0.2, 0.5, 0.8, 1.0), (8.6, 8.5, 7.2, 4.4, 2.8))
+_UPPER = ((0.0, 0.2, 0.5, 0.8, 1.0), (7.0, 7.6, 5.8, 3.5, 2.1))
+_LOWER = ((0.0, 0.2, 0.5, 0.8, 1.0), (8.6, 8.5, 7.2, 4.2, 2.1))
 # inner lips: depth behind the slit, opening to each side [mm]
 _INNER = ((2.2, 0.03), (4.6, 0.7), (6.4, 3.0), (7.0, 7.0))
 # the bag begins behind the first two inner rows

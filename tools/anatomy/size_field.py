@@ -19,10 +19,11 @@ def edge_length(points):
     return np.min(
         [
             np.full(len(points), 10.5),
-            3.2 + growth * beyond((0, -68, 92), 30),
-            2.7 + growth * beyond((32, 0, 78), 20),
-            2.5 + 0.12 * beyond((6, -38, 102), 15),
-            1.9 + 0.15 * beyond((9, -45, 98), 7),
+            3.0 + growth * beyond((0, -68, 92), 32),
+            2.0 + growth * beyond((32, 6, 80), 22),
+            3.0 + growth * beyond((22, -42, 90), 14),
+            2.2 + 0.12 * beyond((6, -38, 102), 15),
+            1.7 + 0.15 * beyond((9, -45, 98), 7),
             3.6 + 0.28 * beyond((80, -18, -14), 30),
             forehead,
         ],

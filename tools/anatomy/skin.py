@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .brow import Brow, brow
 from .eye_loops import eye_loops
 from .fill import fill_skin
 from .loops import loop_polygons
@@ -31,9 +32,12 @@ class HalfSkin:
     mouth_margin, eye_margin : int
         Position of the margin of the opening in the rows.
     kind : list of str
-        Per polygon: "fill", "ear", "mouth" or "eye".
+        Per polygon: "fill", "ear", "mouth", "eye" or "brow".
     band, column : (m,) int ndarray
         Row pair and column of the loop polygons, -1 elsewhere.
+    brow : Brow
+    brow_start : int
+        Vertex of the first point of the eyebrow's outline.
     """
 
     positions: np.ndarray
@@ -45,6 +49,8 @@ class HalfSkin:
     kind: list
     band: np.ndarray
     column: np.ndarray
+    brow: Brow
+    brow_start: int
 
 
 def _oriented(quads, fill_edges):
@@ -89,8 +95,8 @@ def _even_out(positions, polygons, mouth_rows):
 
 def half_skin(landmarks):
     """Return the left half of the skin; `landmarks` (k, 3) become vertices [mm]."""
-    mouth, eye = mouth_loops(), eye_loops()
-    fill = fill_skin(mouth.outer[-1], eye.outer[-1], landmarks)
+    mouth, eye, eyebrow = mouth_loops(), eye_loops(), brow()
+    fill = fill_skin(mouth.outer[-1], [eye.outer[-1], eyebrow.ring], landmarks)
     stacks, count = [fill.positions], len(fill.positions)
     indexed = []
     start = 0
@@ -102,6 +108,8 @@ def half_skin(landmarks):
             stacks.append(row)
             count += len(row)
         indexed.append(rows)
+    brow_start, brow_inner = start, count
+    stacks.append(eyebrow.inner)
     positions = np.vstack(stacks)
     positions[np.abs(positions[:, 0]) < 1e-4, 0] = 0.0
     edges = set(map(tuple, half_edges(fill.faces).tolist()))
@@ -121,6 +129,14 @@ def half_skin(landmarks):
             band.append(np.full(len(closing), len(rows) - 1))
             column.append(np.arange(len(closing)))
         kind += [name] * (len(polygons) - len(kind))
+    ring_count = len(eyebrow.ring)
+    polygons += [
+        tuple(int(brow_start + v if v < ring_count else brow_inner + v - ring_count) for v in quad)
+        for quad in eyebrow.quads
+    ]
+    for labels in (band, column):
+        labels.append(np.full(len(eyebrow.quads), -1))
+    kind += ["brow"] * len(eyebrow.quads)
     mouth_margin, eye_margin = len(mouth.outer) - 1, len(eye.outer) - 1
     positions = _even_out(positions, polygons, indexed[0][: mouth_margin + 1])
     return HalfSkin(
@@ -133,6 +149,8 @@ def half_skin(landmarks):
         kind,
         np.concatenate(band),
         np.concatenate(column),
+        eyebrow,
+        brow_start,
     )
 
 

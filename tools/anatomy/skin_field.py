@@ -6,6 +6,7 @@ from .ear_field import add_ear
 from .face_features import add_lids, add_lips, add_nose
 from .fields import ellipsoid, fold, tube, union, within_box
 from .radial import StarSurface
+from .strokes import stroke_height
 from .table import CENTRE, SKIN
 
 __all__ = ["BASE", "skin_field"]
@@ -15,19 +16,19 @@ BASE = StarSurface(CENTRE, SKIN)
 
 def _neck(points):
     trunk = tube(
-        points, [(0, -60, -22, 44), (0, -110, -17, 47), (0, -150, -16, 49), (0, -200, -22, 54)], 10,
-        scale=(0.98, 1, 1),
-    )  # fmt: skip
+        points,
+        [(0, -60, -20, 42), (0, -100, -16, 44), (0, -135, -14, 45), (0, -200, -20, 50)],
+        12,
+        scale=(1, 1, 1.02),
+    )
     sternomastoid = tube(
-        points, [(54, -45, -12, 9), (44, -100, 2, 10), (27, -150, 22, 9), (12, -190, 32, 8)], 20
+        points, [(52, -45, -14, 8), (43, -95, 2, 8.5), (28, -140, 19, 8), (13, -195, 32, 7)], 20
     )
     trapezius = tube(
-        points,
-        [(20, -20, -75, 12), (24, -80, -60, 18), (34, -150, -55, 22), (50, -200, -50, 26)],
-        16,
+        points, [(16, -30, -68, 12), (22, -80, -58, 17), (30, -140, -52, 20), (44, -200, -50, 24)], 16
     )
-    neck = union(union(trunk, sternomastoid, 18), trapezius, 18)
-    return union(neck, ellipsoid(points, (0, -140, 30), (9, 16, 9)), 12)
+    neck = union(union(trunk, sternomastoid, 22), trapezius, 26)
+    return union(neck, ellipsoid(points, (0, -138, 26), (8, 20, 8)), 16)
 
 
 def skin_field(points):
@@ -37,4 +38,5 @@ def skin_field(points):
     skin = within_box(points, skin, (20, -35, 95), (30, 60, 40), add_nose)
     skin = within_box(points, skin, (15, -65, 90), (35, 35, 40), add_lips)
     skin = within_box(points, skin, (32, 0, 75), (32, 32, 40), add_lids)
+    skin = skin - stroke_height(points)
     return within_box(points, skin, (82, -18, -12), (32, 60, 45), add_ear)
