@@ -38,7 +38,7 @@ def cheek_fields(head: Head, lips: LipSides) -> dict[str, FloatArray]:
         weight = weight * smooth_step(lips.distance / (0.2 * lips.width))
         push = normals + [0.35 * np.sign(start[0]), 0.0, 0.0]
         push /= np.maximum(np.linalg.norm(push, axis=1, keepdims=True), 1e-9)
-        result[side] = 0.2 * lips.width * weight[:, None] * push
+        result[side] = 0.26 * lips.width * weight[:, None] * push
     return result
 
 

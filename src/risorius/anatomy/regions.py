@@ -99,7 +99,7 @@ def find_regions(head: Head, lips: LipSides, margins: dict[str, LidMargins]) -> 
 def _lower(lips: LipSides) -> FloatArray:
     """Return the lower face: 0 on the whole upper side, 1 a little way into the lower one."""
     share = lips.share()
-    return smooth_step((share - 0.5) / 0.12)
+    return smooth_step((share - 0.5) / 0.3)
 
 
 def _nose(head: Head, points: FloatArray, height: float) -> FloatArray:

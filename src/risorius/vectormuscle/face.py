@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from risorius._check import FloatArray, one_of
 from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.regions import find_regions
@@ -65,8 +63,6 @@ class VectorFace:
     mechanics : Mechanics
     bound : mapping of str to BoundMuscle
     controls : tuple of Control
-    outward : (w, 3) float64
-        Outward direction of what supports the skin.
     parameters : VectorParameters
     """
 
@@ -75,7 +71,6 @@ class VectorFace:
     mechanics: Mechanics
     bound: Mapping[str, BoundMuscle]
     controls: tuple[Control, ...]
-    outward: FloatArray
     parameters: VectorParameters
 
     @staticmethod
@@ -110,23 +105,21 @@ class VectorFace:
         mesh = head.skin.mesh
         normals = vertex_normals(mesh.positions, mesh.faces)
         regions = find_regions(head, moving.lips, dict(moving.margins))
-        context = FaceContext(mesh.positions, normals, moving, regions, chosen.angular)
-        bound = {muscle.name: muscle.bind(context) for muscle in fitted.muscles}
-        controls = _muscle_controls(tuple(bound)) + moving.controls
         outward = support_directions(
             mesh.positions, hinge=moving.jaw.hinge, face_height=head.height / 1.9
         )
-        return VectorFace(head, fitted, moving, bound, controls, outward, chosen)
+        context = FaceContext(
+            mesh.positions, normals, moving, regions, chosen.angular, outward, chosen.support
+        )
+        bound = {muscle.name: muscle.bind(context) for muscle in fitted.muscles}
+        controls = _muscle_controls(tuple(bound)) + moving.controls
+        return VectorFace(head, fitted, moving, bound, controls, chosen)
 
     def displace_skin(self, values: Mapping[str, float]) -> FloatArray:
         """Return the displacement (w, 3) [mm] of the welded skin by muscles alone."""
         rest = self.head.skin.mesh.positions
         active = [(muscle, values.get(name, 0.0)) for name, muscle in self.bound.items()]
-        moved = combine(active, rest, steps=self.parameters.steps)
-        if self.parameters.support:
-            inward = np.minimum((moved * self.outward).sum(axis=1), 0.0)
-            moved -= (self.parameters.support * inward)[:, None] * self.outward
-        return moved
+        return combine(active, rest, steps=self.parameters.steps)
 
     def displace(self, pose: Pose) -> FloatArray:
         """Return the displacement (n, 3) [mm, canonical frame] of every input vertex.

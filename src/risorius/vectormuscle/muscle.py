@@ -39,6 +39,10 @@ class FaceContext:
     regions : Regions
         Region weights of the skin.
     angular : {"smooth", "published"}
+    outward : (n, 3) float64
+        Outward direction of what supports the skin.
+    support : float
+        Share of the inward motion that it takes away.
     """
 
     positions: FloatArray
@@ -46,6 +50,8 @@ class FaceContext:
     mechanics: Mechanics
     regions: Regions
     angular: AngularProfile
+    outward: FloatArray
+    support: float
 
 
 class BoundMuscle(Protocol):

@@ -26,6 +26,8 @@ __all__ = ["BoundLinear", "LinearMuscle"]
 
 # Published k is not given; ours: this share of the shorter of the two radii.
 _PULL = 0.4
+# Skin that slides instead of sinking keeps its length up to this factor.
+_MOST_STRETCH = 1.6
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +139,13 @@ class LinearMuscle:
         effect = effect * context.regions.mobility
         vertices = np.flatnonzero(effect > 0.0).astype(np.int32)
         return BoundLinear(
-            vertices, self.pull * effect[vertices], self.origin, self.out, context.normals[vertices]
+            vertices,
+            self.pull * effect[vertices],
+            self.origin,
+            self.out,
+            context.normals[vertices],
+            context.outward[vertices],
+            context.support,
         )
 
     def to_json(self) -> dict[str, Any]:
@@ -162,13 +170,19 @@ class LinearMuscle:
 
 @dataclass(frozen=True, eq=False)
 class BoundLinear:
-    """Zone of a linear muscle: `pull` (k,) [mm] at contraction 1 towards `origin` (3,)."""
+    """Zone of a linear muscle: `pull` (k,) [mm] at contraction 1 towards `origin` (3,).
+
+    `support` of the motion against `outward` (k, 3) is taken away: skin slides over bone and
+    teeth.
+    """
 
     vertices: IntArray
     pull: FloatArray
     origin: FloatArray
     out: float
     normals: FloatArray
+    outward: FloatArray
+    support: float
 
     def displace(self, points: FloatArray, contraction: float) -> FloatArray:
         """Return ``-k g c r a d/|d|`` (k, 3): towards the origin (erratum E2)."""
@@ -176,9 +190,20 @@ class BoundLinear:
         distance = np.linalg.norm(offset, axis=1)
         scale = contraction * self.pull / np.maximum(distance, 1e-300)
         result = -np.where(distance > 0.0, scale, 0.0)[:, None] * offset
+        if self.support:
+            result = self._slide(result)
         if self.out:
             result += (self.out * contraction * self.pull)[:, None] * self.normals
         return result
+
+    def _slide(self, pull: FloatArray) -> FloatArray:
+        """Turn the inward share of a pull (k, 3) along the support; most of its length stays."""
+        inward = np.minimum(np.einsum("kd,kd->k", pull, self.outward), 0.0)
+        along = pull - (self.support * inward)[:, None] * self.outward
+        before = np.linalg.norm(pull, axis=1)
+        after = np.linalg.norm(along, axis=1)
+        stretch = np.minimum(before / np.maximum(after, 1e-300), _MOST_STRETCH)
+        return along * np.where(after > 0.0, stretch, 1.0)[:, None]
 
 
 def _lip_body(context: FaceContext) -> FloatArray:
@@ -187,8 +212,8 @@ def _lip_body(context: FaceContext) -> FloatArray:
     corners = context.positions[list(lips.slit.corners)]
     middle, half = corners[:, 0].mean(), 0.5 * lips.width
     beside = np.abs(context.positions[:, 0] - middle) / half
-    near = smooth_step(1.0 - (lips.distance - 0.15 * lips.width) / (0.3 * lips.width))
-    return near * smooth_step((0.95 - beside) / 0.75)
+    near = smooth_step(1.0 - (lips.distance - 0.25 * lips.width) / (0.5 * lips.width))
+    return near * smooth_step((1.0 - beside) / 0.7)
 
 
 def _warn(message: str) -> None:

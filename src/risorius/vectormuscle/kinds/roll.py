@@ -79,7 +79,8 @@ class RollMuscle:
         near = smooth_step(1.0 - own / self.height)
         # Behind the contact line the lip is folded already and goes along as a whole.
         reach = np.where(lips.inside, smooth_step(1.0 - own / (0.8 * self.height)), near)
-        across = smooth_step(1.0 - np.abs(context.positions[:, 0] - self.centre[0]) / self.half_width)
+        beside = np.abs(context.positions[:, 0] - self.centre[0]) / self.half_width
+        across = smooth_step((1.0 - beside) / 0.6)
         weight = reach * across * mine * context.regions.mobility
         sign = -1.0 if self.lip == "upper" else 1.0
         field = np.zeros((len(weight), 3))
