@@ -16,6 +16,7 @@ from risorius.controls.standard import MUSCLES, SINGLE_MUSCLES, device_controls,
 from risorius.head.frame import MILLIMETRES
 from risorius.head.part import PART_KINDS
 from risorius.landmarks import feature_points
+from risorius.project import PROFILES
 from tests.conventions import (
     LONGEST_FILE,
     REPOSITORY,
@@ -113,6 +114,10 @@ def test_units_on_the_page_are_those_of_the_code() -> None:
 
 def test_emotions_on_the_page_are_those_of_the_code() -> None:
     assert tuple(row[0].strip("`") for row in table("emotion", TEXT)) == EMOTIONS
+
+
+def test_profiles_on_the_page_are_those_of_the_code() -> None:
+    assert tuple(row[0].strip("`") for row in table("profile", TEXT)) == PROFILES
 
 
 def test_every_file_schema_in_the_code_is_on_the_page() -> None:

@@ -165,7 +165,7 @@ def test_a_head_without_any_point_below_the_eyes_is_refused() -> None:
 
 def test_a_chin_between_the_eyes_is_refused() -> None:
     points = landmark_points() | {"2.1": (10.0, 0.0, 64.0)}
-    with pytest.raises(LandmarkError, match="'2.1' lies on the line through the eyes"):
+    with pytest.raises(LandmarkError, match=r"'2\.1' lies on the line through the eyes"):
         detect_frame(landmark_set(points))
 
 
