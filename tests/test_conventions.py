@@ -120,6 +120,12 @@ def test_profiles_on_the_page_are_those_of_the_code() -> None:
     assert tuple(row[0].strip("`") for row in table("profile", TEXT)) == PROFILES
 
 
+def test_exit_codes_on_the_page_are_those_of_the_code(modules: dict[str, ModuleType]) -> None:
+    exits = modules["risorius.cli.exits"]
+    codes = {0, *(getattr(exits, name) for name in exits.__all__)}
+    assert {int(row[0]) for row in table("exit code", TEXT)} == codes
+
+
 def test_every_file_schema_in_the_code_is_on_the_page() -> None:
     page = {row[0].strip("`") for row in table("schema", TEXT)}
     used: dict[str, str] = {}
@@ -218,6 +224,12 @@ def test_the_command_line_may_print_and_exit() -> None:
     source = _GOOD.replace("raise ParameterError", "print") + "\n    sys.exit(1)\n"
     assert complaints(source, "risorius.cli.fake", BOOK) == []
     assert len(complaints(source, "risorius.fake", BOOK)) == 2
+
+
+def test_an_annotated_list_of_public_names_counts() -> None:
+    source = _GOOD.replace("__all__ =", "__all__: list[str] =")
+    assert complaints(source, "risorius.fake", BOOK) == []
+    assert complaints(source.replace("gain` (k,)", "gain`"), "risorius.fake", BOOK) != []
 
 
 def test_cleaning_up_after_any_error_and_passing_it_on_is_allowed() -> None:
