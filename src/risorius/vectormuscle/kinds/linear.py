@@ -12,6 +12,7 @@ import numpy as np
 from risorius._check import FloatArray, IntArray, as_number
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.errors import ParameterError, RisoriusWarning
+from risorius.vectormuscle.kinds.fields import read_regions
 from risorius.vectormuscle.muscle import (
     MIRROR,
     FaceContext,
@@ -221,9 +222,6 @@ def _warn(message: str) -> None:
 
 
 def _read(entry: Mapping[str, Any], where: str) -> LinearMuscle:
-    regions = entry.get("regions", [])
-    if not isinstance(regions, list) or not all(isinstance(r, str) for r in regions):
-        raise ParameterError(f"{where}: regions must be a list of region names")
     number = {
         key: as_number(f"{where}: {key}", entry.get(key, default))
         for key, default in (
@@ -243,7 +241,7 @@ def _read(entry: Mapping[str, Any], where: str) -> LinearMuscle:
         number["finish_radius"],
         number["half_angle"],
         number["strength"],
-        tuple(regions),
+        read_regions(entry, where),
         number["out"],
         number["corner"],
     )
