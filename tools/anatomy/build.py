@@ -11,12 +11,14 @@ import numpy as np
 from .bones import bone_parts
 from .eyes import eye_parts
 from .labels import skin_groups, skin_materials
+from .lashes import lashes_part
 from .landmark_places import SKIN_PLACES
 from .landmarks import bone_landmarks, head_landmarks, landmark_text
 from .obj_writer import material_text, object_text
-from .part import Part
+from .part import Part, mirror_part
 from .skin import half_skin, mirror_half
 from .teeth import gums_part, teeth_part
+from .table import EYE_CENTRE
 from .tongue import tongue_part
 from .unwrap import skin_uvs
 
@@ -55,6 +57,8 @@ def build_head():
     parts += [teeth_part(which) for which in ("upper", "lower")]
     parts += [gums_part(which) for which in ("upper", "lower")]
     parts.append(tongue_part())
+    lashes = lashes_part(half, EYE_CENTRE)
+    parts += [lashes, mirror_part(lashes, "lashes_right")]
     materials = sorted({name for part in parts for name in part.materials})
     return {
         "head.obj": object_text(parts, library="head.mtl"),

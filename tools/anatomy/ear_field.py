@@ -28,7 +28,7 @@ def add_ear(points, skin):
     ear = union(blade, ellipsoid(q, (7, -26, 0), (8, 9, 3.6)), 8)
     helix = tube(
         q,
-        [(3, 6, 2, 1.8), (2, 16, 2.5, 2.4), (8, 26, 3, 2.8), (18, 27, 3, 3), (27, 17, 2.5, 3),
+        [(6, 2, 2.5, 1.4), (2.4, 9, 2.6, 2.1), (2.8, 18, 2.7, 2.5), (9, 26.2, 3, 2.8), (18, 27, 3, 3), (27, 17, 2.5, 3),
          (29, 2, 2, 2.7), (25, -13, 1.5, 2.3), (15, -23, 1, 2.2)],
         40,
     )  # fmt: skip
@@ -42,8 +42,8 @@ def add_ear(points, skin):
     ear = union(ear, antihelix, 3)
     ear = union(ear, ellipsoid(q, (2, -3, 3), (3.2, 6, 3)), 3)  # tragus
     # the back wall keeps the bowl from piercing the blade, which would add a handle
-    ear = union(ear, ellipsoid(q, (9.5, -3, -6), (11, 15, 8.5)), 5)
+    ear = union(ear, ellipsoid(q, (9, -4, -6), (11, 18, 8.5)), 6)
     ear = cut(ear, -ellipsoid(q, (9.5, -2, 4.5), (8, 11, 6.5)), 2.5)
-    joined = union(skin, ear, 5)
+    joined = union(skin, ear, 6)
     # the blend refills the bowl: carve it again
     return cut(joined, -ellipsoid(q, (8.5, -3, 5), (6, 8, 7)), 2.5)

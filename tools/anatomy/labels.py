@@ -11,7 +11,7 @@ __all__ = ["skin_groups", "skin_materials"]
 
 # upper border of the neck and lower border of the scalp: z, y in the side view [mm]
 _NECK = ((-70, -20, 0, 15, 35, 60, 80), (-52, -56, -70, -90, -106, -114, -117))
-_SCALP = ((-60, -35, -20, 0, 20, 45, 62, 80), (-40, -40, 15, 22, 34, 50, 66, 79))
+_SCALP = ((-40, -32, -20, 0, 20, 45, 62, 80), (-99, -30, 15, 22, 34, 50, 66, 79))
 # columns on each side of the inner corner of the eye that show the caruncle
 _CARUNCLE_COLUMNS = 2
 _MATERIALS = {"mouth_bag": "mouth", "vermilion_upper": "lips", "vermilion_lower": "lips"}

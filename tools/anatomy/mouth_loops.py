@@ -18,8 +18,8 @@ BORDER_ROW = len(_VERMILION_ROWS)
 # rows outside of the border [mm]
 _SKIN_ROWS = (2.3, 5.2, 8.8)
 # height of the vermilion from the slit by x / half width: upper, lower [mm]
-_UPPER = ((0.0, 0.2, 0.5, 0.8, 1.0), (7.0, 7.6, 5.8, 3.5, 2.1))
-_LOWER = ((0.0, 0.2, 0.5, 0.8, 1.0), (8.6, 8.5, 7.2, 4.2, 2.1))
+_UPPER = ((0.0, 0.2, 0.5, 0.8, 1.0), (6.6, 7.9, 6.0, 3.4, 1.9))
+_LOWER = ((0.0, 0.2, 0.5, 0.8, 1.0), (8.6, 8.5, 7.2, 4.2, 1.9))
 # inner lips: depth behind the slit, opening to each side [mm]
 _INNER = ((2.2, 0.03), (4.6, 0.7), (6.4, 3.0), (7.0, 7.0))
 # the bag begins behind the first two inner rows
@@ -39,6 +39,14 @@ def lip_sign():
     return np.repeat([1.0, 0.0, -1.0], [COLUMNS_PER_LIP, 1, COLUMNS_PER_LIP])
 
 
+def _even_polynomial(x, values):
+    """Return `values` (n,) smoothed along the slit, level at the midline and true at the corner."""
+    powers = np.array([0, 2, 3, 4, 5, 6])
+    weight = np.where(x == x.max(), 3.0, 1.0)
+    basis = (x[:, None] / MOUTH_HALF_WIDTH) ** powers
+    return basis @ np.linalg.lstsq(basis * weight[:, None], values * weight, rcond=None)[0]
+
+
 def _valley():
     """Return x and y (n + 1,) of the bottom of the crease between the lips."""
     x = MOUTH_HALF_WIDTH * np.arange(COLUMNS_PER_LIP + 1) / COLUMNS_PER_LIP
@@ -47,11 +55,7 @@ def _valley():
     grid = np.column_stack([np.repeat(x, len(shift)), (height[:, None] + shift).ravel()])
     depth = lift(grid)[:, 2].reshape(len(x), -1)
     y = height + shift[depth.argmin(axis=1)] * (x < 0.8 * MOUTH_HALF_WIDTH)
-    powers = np.array([0, 2, 3, 4, 5, 6])
-    weight = np.where(x == x[-1], 3.0, 1.0)[:, None]
-    basis = (x[:, None] / MOUTH_HALF_WIDTH) ** powers
-    fit = np.linalg.lstsq(basis * weight, y * weight[:, 0], rcond=None)[0]
-    return x, basis @ fit
+    return x, _even_polynomial(x, y)
 
 
 def _there_and_back(values):
@@ -88,6 +92,7 @@ def mouth_loops():
     angle = 0.5 * np.pi * (1 - share**5) * sign + slope * share**5
     direction = np.column_stack([np.cos(angle), np.sin(angle)])
     slit = lift(plane)
+    slit[:, 2] = _even_polynomial(plane[:, 0], slit[:, 2])
     slit[:, 1] += 0.5 * _GAP * sign
     border = np.where(sign >= 0, np.interp(share, *_UPPER), np.interp(share, *_LOWER))
     offsets = [s * border for s in _VERMILION_ROWS] + [border + d for d in _SKIN_ROWS]
