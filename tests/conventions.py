@@ -89,7 +89,7 @@ def complaints(source: str, name: str, book: Book) -> list[str]:
     tree = ast.parse(source)
     found = [f"{name}: {text}" for text in _module_rules(tree, name, book)]
     found += [f"{name}: {text}" for text in _raised(tree, name, book)]
-    found += [f"{name}: {text}" for text in _public_rules(tree, book)]
+    found += [f"{name}: {text}" for text in _public_rules(tree, name, book)]
     return found
 
 
@@ -148,16 +148,18 @@ def _raised(tree: ast.Module, name: str, book: Book) -> Iterator[str]:
                 yield f"line {node.lineno}: raises {kind}, which is not in risorius.errors"
 
 
-def _public_rules(tree: ast.Module, book: Book) -> Iterator[str]:
+def _public_rules(tree: ast.Module, name: str, book: Book) -> Iterator[str]:
     public = set(_public_names(tree) or ())
     for node in tree.body:
-        name = getattr(node, "name", "")
-        if name not in public:
+        if getattr(node, "name", "") not in public:
             continue
         if isinstance(node, ast.ClassDef):
             yield from _class_rules(node, book)
         elif isinstance(node, Function):
-            yield from _function_rules(node, name, book)
+            yield from _function_rules(node, node.name, book)
+            # The signature of a verb is what a person types, in the order that help shows.
+            if not _is_command_line(name):
+                yield from _defaults(node, node.name)
 
 
 def _spelling(identifier: str, where: str, book: Book) -> Iterator[str]:
@@ -185,7 +187,9 @@ def _class_rules(node: ast.ClassDef, book: Book) -> Iterator[str]:
         elif isinstance(member, Function):
             name = member.name
             if name in ("__init__", "__call__") or not name.startswith("_"):
-                yield from _function_rules(member, f"{node.name}.{name}", book, class_text=text)
+                where = f"{node.name}.{name}"
+                yield from _function_rules(member, where, book, class_text=text)
+                yield from _defaults(member, where)
 
 
 def _function_rules(
@@ -217,7 +221,6 @@ def _function_rules(
             yield f"{where}({name}): the docstring gives no shape"
     if _returns_array(node) and not any_shape and node.name != "__init__":
         yield f"{where}: the docstring gives no shape of the result"
-    yield from _defaults(node, where)
 
 
 def _is_array(annotation: ast.expr | None) -> bool:

@@ -220,6 +220,12 @@ def test_each_breach_earns_its_complaint(old: str, new: str, complaint: str) -> 
     assert any(complaint in text for text in found), found
 
 
+def test_a_verb_of_the_command_line_may_have_many_options() -> None:
+    source = _GOOD.replace("*, hard", "hard")
+    assert complaints(source, "risorius.cli.fake", BOOK) == []
+    assert len(complaints(source, "risorius.fake", BOOK)) == 2
+
+
 def test_the_command_line_may_print_and_exit() -> None:
     source = _GOOD.replace("raise ParameterError", "print") + "\n    sys.exit(1)\n"
     assert complaints(source, "risorius.cli.fake", BOOK) == []
