@@ -123,20 +123,43 @@ def head_landmarks(parts, half, image):
     return {name: {"vertex": vertex} for name, vertex in marks.items()}
 
 
+def _on_midline(positions, faces, target):
+    """Return face and weights (3,) of the point of the midline edges closest to `target`."""
+    middle = positions[faces][:, :, 0] == 0.0
+    rows = np.flatnonzero(middle.sum(axis=1) == 2)
+    ends = np.sort(np.argsort(~middle[rows], axis=1, kind="stable")[:, :2], axis=1)
+    a, b = (positions[faces[rows, ends[:, k]]] for k in (0, 1))
+    along = ((target - a) * (b - a)).sum(axis=1) / ((b - a) ** 2).sum(axis=1)
+    along = np.clip(along, 0.0, 1.0)
+    best = int(np.linalg.norm(a + along[:, None] * (b - a) - target, axis=1).argmin())
+    weights = np.zeros(3)
+    weights[ends[best]] = 1.0 - along[best], along[best]
+    return int(rows[best]), weights
+
+
 def bone_landmarks(parts):
-    """Return name -> vertex of cranium and mandible in the file's order."""
+    """Return name -> surface point of cranium and mandible, faces in the file's order.
+
+    The faces of the right half follow those of the left in the same order, corners reversed.
+    """
     marks, begin = {}, 0
     for part in parts:
         faces = triangles_of(part.polygons)
+        left = faces[: len(faces) // 2]
         for name, place in BONE_PLACES[part.name].items():
-            places = {name: np.array(place, float)}
+            target = np.array(place, float)
+            if target[0] == 0.0:
+                face, weights = _on_midline(part.positions, left, target)
+            else:
+                found, found_weights, _ = closest_on_mesh(part.positions, left, target[None])
+                face, weights = int(found[0]), found_weights[0]
+            weights = np.round(weights, 6)
+            weights[weights.argmax()] += 1.0 - weights.sum()
+            marks[name] = {"face": begin + face, "bary": np.round(weights, 6).tolist()}
             if name.endswith("_l"):
-                places[name[:-1] + "r"] = np.array(place) * [-1.0, 1.0, 1.0]
-            for full_name, target in places.items():
-                face, weights, _ = closest_on_mesh(part.positions, faces, target[None])
-                point = weights[0] @ part.positions[faces[face[0]]]
-                marks[full_name] = {"vertex": begin + _nearest(part.positions, point)}
-        begin += len(part.positions)
+                mirrored = {"face": begin + face + len(left), "bary": marks[name]["bary"][::-1]}
+                marks[name[:-1] + "r"] = mirrored
+        begin += len(faces)
     return marks
 
 
