@@ -291,6 +291,23 @@ def head_specs(kind: Literal["slit", "bag", "welded"] = "slit") -> dict[str, Lan
     return specs | {name: LandmarkSpec(vertex=vertex) for name, vertex in fixed.items()}
 
 
+def placed_specs(kind: Literal["slit", "bag", "welded"] = "slit") -> dict[str, LandmarkSpec]:
+    """Return the landmarks of `head_specs` as positions [mm]."""
+    positions = face_sheet(kind).mesh.positions
+    specs = head_specs(kind)
+    places = {name: positions[spec.vertex] for name, spec in specs.items()}
+    return {name: LandmarkSpec(position=tuple(place)) for name, place in places.items()}
+
+
+def exploded(piece: Piece) -> Piece:
+    """Return the piece with vertices of its own for every polygon, as texture seams do it."""
+    points, polygons = piece
+    order = [vertex for polygon in polygons for vertex in polygon]
+    ends = np.cumsum([len(polygon) for polygon in polygons])
+    own = [tuple(range(end - len(polygon), end)) for end, polygon in zip(ends.tolist(), polygons)]
+    return points[order], own
+
+
 def assemble(pieces: Mapping[str, Piece], *, names: Mapping[str, str] | None = None) -> PolygonMesh:
     """Return one mesh of all `pieces`; those in `names` (piece -> name) become named objects."""
     names = names or {}

@@ -64,7 +64,7 @@ def jaw_share_of_skin(head: Head, lips: LipSides, hinge: FloatArray) -> FloatArr
     )
     fix(np.flatnonzero(still), 0.0, 1.0)
     # Follow: the chin, and the skin between chin and lower lip.
-    for name in ("2.1", "2.10"):
+    for name in marks.common(("2.1", "2.10")):
         near = np.linalg.norm(points - marks.position(name), axis=1) < 0.22 * width
         fix(np.flatnonzero(near & ~lips.inside & lips.lower), 1.0, 1.0)
     middle = np.abs(points[:, 0] - corners[:, 0].mean())

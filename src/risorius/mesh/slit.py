@@ -211,7 +211,18 @@ def _trace(
         while piece[-1] != start:
             piece.append(int(before[piece[-1]]))
         line.extend(piece[-2::-1])
-    return np.asarray(list(dict.fromkeys(line)), np.int32)
+    return np.asarray(list(dict.fromkeys(_without_spikes(line))), np.int32)
+
+
+def _without_spikes(line: list[int]) -> list[int]:
+    """Drop what a line runs out and back again to a stop that lies beside it."""
+    result: list[int] = []
+    for vertex in line:
+        if len(result) > 1 and result[-2] == vertex:
+            result.pop()
+        else:
+            result.append(vertex)
+    return result
 
 
 def _inside(mesh: TriMesh, loop: BoolArray) -> BoolArray:
