@@ -1,0 +1,67 @@
+"""The program `risorius` and its verbs."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from risorius import __version__
+from risorius.cli import check, demo, inspect, landmarks, project, render, rig
+from risorius.cli.exits import INTERRUPTED
+
+__all__ = ["app", "run"]
+
+_HELP = """Turn a static 3D head into a blendshape rig that moves by muscles.
+
+To see what it does:  risorius demo
+
+With a head of your own:  risorius check head.obj -l head.landmarks.json,
+then  risorius rig head.obj -l head.landmarks.json -o face.glb
+
+Exit codes: 0 done, 1 the input is refused or not fit, 2 the command was written wrongly,
+130 interrupted.
+"""
+
+app = typer.Typer(
+    help=_HELP,
+    no_args_is_help=True,
+    add_completion=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="markdown",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"risorius {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _program(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Print the version."),
+    ] = False,
+) -> None:
+    """Hold the options of the program itself."""
+
+
+app.command("demo")(demo.demo)
+app.command("check")(check.check)
+app.command("rig")(rig.rig)
+app.command("inspect")(inspect.inspect)
+app.command("render")(render.render)
+app.command("landmarks")(landmarks.landmarks)
+app.add_typer(project.app, name="project")
+
+
+def run() -> None:
+    """Run the program; the entry point of the console script."""
+    try:
+        app()
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)

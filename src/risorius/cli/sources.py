@@ -1,0 +1,180 @@
+"""From the arguments of a verb to a project, a head and a rig."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from risorius import _formats
+from risorius.anatomy.mechanics import Mechanics
+from risorius.cli.talk import Talk
+from risorius.controls.shape_sets import ShapeList, list_shapes
+from risorius.head.head import Head, HeadOptions
+from risorius.project import (
+    BUILTIN,
+    Project,
+    face_of,
+    landmarks_of,
+    presets_of,
+    read_mesh,
+    read_project,
+    vectors_of,
+)
+from risorius.rig.bake import bake, empty_rig
+from risorius.rig.rig import Rig
+
+__all__ = [
+    "Baked",
+    "Given",
+    "bake_head",
+    "is_rig",
+    "load_rig",
+    "read_head",
+    "resolve",
+    "with_given",
+    "with_head",
+]
+
+_RIG_ENDINGS = (".glb", ".gltf", ".npz")
+
+
+@dataclass(frozen=True)
+class Given:
+    """What stood on the command line; None and empty where nothing was said."""
+
+    landmarks: Path | None = None
+    unit: str | None = None
+    axes: str | None = None
+    parts: dict[str, str] = field(default_factory=dict[str, str])
+    flip_landmarks: bool = False
+    method: str | None = None
+    profile: str | None = None
+    parameters: dict[str, float | str] = field(default_factory=dict[str, float | str])
+    shapes: str | None = None
+    presets: Path | None = None
+    vector_set: Path | None = None
+
+
+def resolve(head: str, given: Given) -> Project:
+    """Return the project that `head` names or stands for, with what was given on top.
+
+    Raises
+    ------
+    FormatError
+        If a project file is missing or malformed.
+    ParameterError
+        If a word is not one of its choices.
+    """
+    if head.lower().endswith(".json"):
+        return with_given(read_project(head), given)
+    return with_given(with_head(Project(), head), given)
+
+
+def with_head(base: Project, head: str | None) -> Project:
+    """Return `base` with another head, if one was given."""
+    if head is None:
+        return base
+    return replace(base, head=None if head == BUILTIN else Path(head))
+
+
+def with_given(base: Project, given: Given) -> Project:
+    """Return `base` with everything replaced that was given."""
+    changed: dict[str, Any] = {
+        name: getattr(given, name)
+        for name in ("landmarks", "unit", "axes", "method", "profile", "presets", "vector_set")
+        if getattr(given, name) is not None
+    }
+    if given.parts:
+        changed["parts"] = {**base.parts, **given.parts}
+    if given.parameters:
+        changed["parameters"] = {**base.parameters, **given.parameters}
+    if given.flip_landmarks:
+        changed["flip_landmarks"] = not base.flip_landmarks
+    if given.shapes is not None:
+        changed["shapes"] = tuple(name.strip() for name in given.shapes.split(",") if name.strip())
+    return replace(base, **changed)
+
+
+def is_rig(path: str) -> bool:
+    """Return whether `path` names a rig: a GLB, an archive or a folder of OBJ files."""
+    return Path(path).suffix.lower() in _RIG_ENDINGS or Path(path).is_dir()
+
+
+def read_head(project: Project, talk: Talk) -> Head:
+    """Read the head of a project and say which frame was found."""
+    with talk.stage("read"):
+        mesh, carried = read_mesh(project)
+        specs = landmarks_of(project, carried)
+    with talk.stage("parts+lips+lids"):
+        head = Head.from_mesh(mesh, specs, options=project.options)
+    talk.put(
+        head=project.name,
+        vertices=head.vertex_count,
+        polygons=mesh.polygon_count,
+        frame={
+            "unit": head.frame.unit,
+            "millimetres": head.frame.scale,
+            "description": head.frame.describe(),
+        },
+        parts={kind: len(part.source) for kind, part in head.parts.items()},
+    )
+    talk.say(f"{project.name}: {head.vertex_count} vertices, {mesh.polygon_count} polygons")
+    talk.say(f"  frame: {head.frame.describe()}")
+    talk.say(f"  parts: {', '.join(head.parts)}")
+    return head
+
+
+def load_rig(path: str, landmarks: Path | None, *, flip_landmarks: bool = False) -> Rig:
+    """Read a rig; `landmarks` place and part one that was made elsewhere.
+
+    Raises
+    ------
+    RisoriusError
+        If the rig cannot be read or the landmarks do not fit it.
+    """
+    rig = Rig.load(path)
+    if landmarks is None:
+        return rig
+    specs = _formats.read_landmarks(landmarks)
+    options = HeadOptions(flip_landmarks=flip_landmarks)
+    head = Head.from_mesh(rig.mesh, specs, options=options)
+    return empty_rig(head).with_targets(rig.targets, controls=rig.controls, left_out=rig.left_out)
+
+
+@dataclass(frozen=True, eq=False)
+class Baked:
+    """A rig and what its making had to leave out."""
+
+    rig: Rig
+    left_out: dict[str, str]
+
+
+def bake_head(project: Project, talk: Talk, *, only: Sequence[str] | None = None) -> Baked:
+    """Read a head, bind the method and bake its shapes, or `only` those named.
+
+    Raises
+    ------
+    RisoriusError
+        If something of it is refused.
+    """
+    vectors, presets = vectors_of(project), presets_of(project)
+    head = read_head(project, talk)
+    with talk.stage("parts+lips+lids"):
+        mechanics = Mechanics.build(head)
+    with talk.stage("muscles"):
+        face = face_of(project, head, mechanics=mechanics, vectors=vectors)
+    for note in mechanics.notes:
+        talk.note(note)
+    shapes = list_shapes(face.controls, presets, sets=project.shapes)
+    if only is not None:
+        shapes = _chosen(shapes, only)
+    with talk.stage("bake") as tick:
+        rig = bake(face, shapes.poses, left_out=shapes.left_out, progress=tick)
+    return Baked(rig, dict(shapes.left_out))
+
+
+def _chosen(shapes: ShapeList, names: Sequence[str]) -> ShapeList:
+    """Return the named shapes; unknown names are left to the rig to refuse."""
+    return ShapeList({name: shapes.poses[name] for name in names if name in shapes.poses}, {})

@@ -1,0 +1,182 @@
+"""Read, write and upgrade project files."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from risorius.controls.shape_sets import SHAPE_SETS
+from risorius.errors import FormatError, ParameterError
+from risorius.io.atomic import write_bytes
+from risorius.io.bounded import MEGABYTE, read_json
+from risorius.io.json_fields import Fields
+from risorius.project.project import BUILTIN, Project
+
+__all__ = ["SCHEMA", "UPGRADES", "VERSION", "read_project", "upgrade_project", "write_project"]
+
+SCHEMA = "risorius/project"
+VERSION = 1
+_LIMIT = 4 * MEGABYTE
+_PATHS = ("head", "landmarks", "vector_set", "presets")
+_TEXTS = ("unit", "axes", "method", "profile")
+_OTHERS = ("parts", "flip_landmarks", "parameters", "shapes")
+
+Document = dict[str, Any]
+Upgrade = Callable[[Document], Document]
+UPGRADES: dict[int, Upgrade] = {}
+"""For each old version the step that turns its content into the next version's."""
+
+
+def read_project(path: str | Path) -> Project:
+    """Read a project; paths in it count from its own folder.
+
+    Raises
+    ------
+    FormatError
+        If the file is malformed, of another schema or of a newer version.
+    """
+    document = read_json(path, schema=SCHEMA, version=VERSION, limit=_LIMIT)
+    return _parse(_lifted(document, UPGRADES, VERSION), Path(path))
+
+
+def write_project(project: Project, path: str | Path) -> None:
+    """Write a project; paths below or beside its folder are written relative to it.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be written.
+    """
+    path = Path(path)
+    document: Document = {"schema": SCHEMA, "version": VERSION}
+    folder = Path(os.path.realpath(path)).parent
+    for name in (*_PATHS[:2], *_TEXTS[:2], *_OTHERS[:2], *_TEXTS[2:], *_OTHERS[2:], *_PATHS[2:]):
+        value = getattr(project, name)
+        if name == "head" and value is None:
+            document[name] = BUILTIN
+        elif isinstance(value, Path):
+            document[name] = _relative(value, folder)
+        elif isinstance(value, Mapping):
+            if value:
+                document[name] = dict(value)  # pyright: ignore[reportUnknownArgumentType]
+        elif value is not None and value is not False:
+            document[name] = list(value) if isinstance(value, tuple) else value
+    text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
+    write_bytes(path, f"{text}\n".encode())
+
+
+def upgrade_project(
+    path: str | Path, *, steps: Mapping[int, Upgrade] | None = None, version: int = VERSION
+) -> Path | None:
+    """Rewrite a project of an older version in the newest one.
+
+    Parameters
+    ----------
+    path : path
+    steps : mapping of int to callable, optional
+        Default: `UPGRADES`.
+    version : int
+        Version to reach.
+
+    Returns
+    -------
+    Path or None
+        The copy of the old file, ``<name>.v<version>.json`` with a number if that is taken; None
+        if nothing had to be done.
+
+    Raises
+    ------
+    FormatError
+        If the file is malformed or of a newer version, or cannot be written.
+    """
+    path = Path(path)
+    document = read_json(path, schema=SCHEMA, version=version, limit=_LIMIT)
+    old = int(document["version"])
+    if old == version:
+        return None
+    lifted = _lifted(document, UPGRADES if steps is None else steps, version)
+    backup = _free_name(path, old)
+    write_bytes(backup, path.read_bytes())
+    text = json.dumps(lifted, indent=2, ensure_ascii=False, allow_nan=False)
+    write_bytes(path, f"{text}\n".encode())
+    return backup
+
+
+def _lifted(document: Document, steps: Mapping[int, Upgrade], version: int) -> Document:
+    while document["version"] < version:
+        number = int(document["version"])
+        document = {**steps[number](document), "version": number + 1}
+    return document
+
+
+def _free_name(path: Path, version: int) -> Path:
+    name = path.with_name(f"{path.stem}.v{version}{path.suffix}")
+    count = 1
+    while name.exists():
+        count += 1
+        name = path.with_name(f"{path.stem}.v{version}-{count}{path.suffix}")
+    return name
+
+
+def _parse(document: Document, path: Path) -> Project:
+    fields = Fields(document, str(path))
+    known = ("schema", "version", "about", *_PATHS, *_TEXTS, *_OTHERS)
+    unknown = [name for name in fields if name not in known]
+    if unknown:
+        raise FormatError(
+            f"{path}: {', '.join(repr(name[:40]) for name in unknown[:3])} is no entry of a "
+            f"project; known: {', '.join(known[3:])}"
+        )
+    if "head" not in fields:
+        raise FormatError(f'{path}: "head" is missing; give a path or "{BUILTIN}"')
+    head = fields.text("head")
+    project = Project(head=None if head == BUILTIN else _absolute(head, path))
+    flip = document.get("flip_landmarks", False)
+    if not isinstance(flip, bool):
+        raise FormatError(f"{fields.place('flip_landmarks')}: expected true or false")
+    parts = fields.fields("parts")
+    parameters = fields.fields("parameters")
+    try:
+        return replace(
+            project,
+            landmarks=_path(fields, "landmarks", path),
+            vector_set=_path(fields, "vector_set", path),
+            presets=_path(fields, "presets", path),
+            unit=fields.text("unit") if "unit" in fields else None,
+            axes=fields.text("axes") if "axes" in fields else None,
+            method=fields.text("method", default=project.method),
+            profile=fields.text("profile", default=project.profile),
+            parts={kind: parts.text(kind) for kind in parts},
+            parameters={name: _parameter(parameters, name) for name in parameters},
+            flip_landmarks=flip,
+            shapes=tuple(fields.texts("shapes")) if "shapes" in fields else SHAPE_SETS,
+        )
+    except ParameterError as error:
+        raise FormatError(f"{path}: {error}") from None
+
+
+def _parameter(fields: Fields, name: str) -> float | str:
+    value = fields.value[name]
+    return fields.text(name) if isinstance(value, str) else fields.number(name)
+
+
+def _path(fields: Fields, key: str, path: Path) -> Path | None:
+    return _absolute(fields.text(key), path) if key in fields else None
+
+
+def _absolute(text: str, path: Path) -> Path:
+    if not text or "\0" in text:
+        raise FormatError(f"{path}: {text[:60]!r} is no path")
+    return path.parent / text
+
+
+def _relative(path: Path, folder: Path) -> str:
+    """Return `path` as seen from `folder`, with forward slashes; absolute where no way leads."""
+    try:
+        return Path(os.path.relpath(os.path.realpath(path), folder)).as_posix()
+    except ValueError:  # another drive
+        return Path(os.path.realpath(path)).as_posix()

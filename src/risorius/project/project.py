@@ -1,0 +1,89 @@
+"""The project: which head, which landmarks, which method, with what settings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from risorius._check import one_of
+from risorius.controls.shape_sets import SHAPE_SETS
+from risorius.head.head import HeadOptions
+from risorius.head.part import PART_KINDS
+
+__all__ = ["BUILTIN", "METHODS", "PROFILES", "Project"]
+
+BUILTIN = "builtin"
+"""What stands for a path where the head that ships with risorius is meant."""
+
+METHODS = ("vector",)
+"""Methods that pose a face."""
+
+PROFILES = ("improved", "faithful")
+"""How closely a method follows its publication."""
+
+
+@dataclass(frozen=True)
+class Project:
+    """Everything that `risorius rig` needs to know; nothing in it is derived.
+
+    Parameters
+    ----------
+    head : Path or None
+        Mesh file; None for the built-in head.
+    landmarks : Path or None
+        Landmark file; None where the head brings its own, or has a file
+        ``<head>.landmarks.json`` beside it.
+    unit, axes : str or None
+        See `HeadOptions`; None to detect them.
+    parts : mapping of str to str
+        Part kind -> name of object, group or material.
+    flip_landmarks : bool
+        Exchange left and right in the landmark names.
+    method : str
+        One of `METHODS`.
+    profile : str
+        One of `PROFILES`.
+    parameters : mapping of str to value
+        Parameters of the method that differ from its profile.
+    vector_set, presets : Path or None
+        Recipes; None for those that ship with risorius.
+    shapes : tuple of str
+        Sets of shapes to bake.
+
+    Raises
+    ------
+    ParameterError
+        If a word is not one of its choices.
+    """
+
+    head: Path | None = None
+    landmarks: Path | None = None
+    unit: str | None = None
+    axes: str | None = None
+    parts: Mapping[str, str] = field(default_factory=dict[str, str])
+    flip_landmarks: bool = False
+    method: str = "vector"
+    profile: str = "improved"
+    parameters: Mapping[str, float | str] = field(default_factory=dict[str, float | str])
+    vector_set: Path | None = None
+    presets: Path | None = None
+    shapes: tuple[str, ...] = SHAPE_SETS
+
+    def __post_init__(self) -> None:
+        one_of("method", self.method, METHODS)
+        one_of("profile", self.profile, PROFILES)
+        for name in self.shapes:
+            one_of("shapes", name, SHAPE_SETS)
+        for kind in self.parts:
+            one_of("part", kind, PART_KINDS)
+
+    @property
+    def options(self) -> HeadOptions:
+        """What a person said about the head."""
+        return HeadOptions(self.unit, self.axes, dict(self.parts), self.flip_landmarks)
+
+    @property
+    def name(self) -> str:
+        """The head in words."""
+        return BUILTIN if self.head is None else str(self.head)

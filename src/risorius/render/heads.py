@@ -1,0 +1,217 @@
+"""Pictures of heads and rigs: parts in their colours, framed by landmarks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from risorius._check import FloatArray, IntArray, as_points
+from risorius.errors import ShapeError
+from risorius.head.head import Head
+from risorius.head.part_geometry import fit_sphere
+from risorius.landmarks.landmark_set import LandmarkSet, resolve
+from risorius.mesh.welding import Weld, weld
+from risorius.render.camera import Camera
+from risorius.render.kernels.raster import area_normals
+from risorius.render.materials import colour_of_material, eye_paint, look_of_material
+from risorius.render.picture import render
+from risorius.render.surface import Surface
+from risorius.render.views import camera_for
+from risorius.rig.bake import empty_rig
+from risorius.rig.rig import Rig
+
+__all__ = ["Portrait"]
+
+# An eye that misses the best sphere by more than this share of its radius is not painted.
+_ROUND = 0.12
+# Parts whose own look says more than the names of materials on them.
+_BY_PART = ("teeth", "tongue", "gums", "lashes")
+
+
+@dataclass(frozen=True, eq=False)
+class _Piece:
+    """Triangles of one look; `vertices` (k,) of the whole head, `faces` (m, 3) count in them."""
+
+    vertices: IntArray
+    faces: IntArray
+    look: Mapping[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Portrait:
+    """A head that sits for pictures.
+
+    Parameters
+    ----------
+    positions : (n, 3) float64
+        All vertices at rest, canonical frame [mm].
+    landmarks : LandmarkSet
+        In the same frame; may be empty, then the whole mesh is framed.
+    """
+
+    positions: FloatArray
+    landmarks: LandmarkSet
+    _rig: Rig
+    _pieces: tuple[_Piece, ...]
+    _joined: Weld
+
+    @staticmethod
+    def of(subject: Rig | Head) -> Portrait:
+        """Return the portrait of a rig or of a head."""
+        rig = empty_rig(subject) if isinstance(subject, Head) else subject
+        positions = rig.frame.to_canonical(rig.mesh.positions)
+        marks = LandmarkSet((), positions)
+        if rig.landmarks:
+            marks = resolve(rig.landmarks, rig.mesh).at(positions)
+        # Seams of texture coordinates would show as creases.
+        joined = weld(positions, tolerance=0.0)
+        return Portrait(positions, marks, rig, _pieces(rig, positions), joined)
+
+    def posed(self, weights: Mapping[str, float]) -> FloatArray:
+        """Return the positions (n, 3) with weighted targets of the rig [mm].
+
+        Raises
+        ------
+        ParameterError
+            If the rig has no target of such a name.
+        """
+        return self._rig.frame.to_canonical(self._rig.posed(weights))
+
+    def surfaces(self, positions: npt.ArrayLike | None = None) -> list[Surface]:
+        """Return what is drawn, at rest or with the vertices at `positions` (n, 3) [mm]."""
+        placed = self.positions if positions is None else as_points("positions", positions)
+        if placed.shape != self.positions.shape:
+            raise ShapeError(
+                f"positions: expected shape {self.positions.shape}, got {placed.shape}"
+            )
+        normals = self._normals(placed)
+        return [
+            Surface(
+                placed[piece.vertices],
+                piece.faces,
+                normals=normals[piece.vertices],
+                **piece.look,
+            )
+            for piece in self._pieces
+        ]
+
+    def camera(
+        self, view: str, *, yaw: float | None = None, pitch: float | None = None, aspect: float = 1
+    ) -> Camera:
+        """Return the camera of a named view (see `risorius.render.views.VIEWS`).
+
+        Parameters
+        ----------
+        view : str
+        yaw, pitch : float, optional
+            Turn of the camera instead of the view's own [deg].
+        aspect : float
+            Width over height of the picture.
+
+        Raises
+        ------
+        ParameterError
+            If there is no such view.
+        LandmarkError
+            If a close-up lacks its landmarks.
+        """
+        return camera_for(view, self.landmarks, self.positions, yaw=yaw, pitch=pitch, aspect=aspect)
+
+    def picture(
+        self,
+        camera: Camera,
+        *,
+        size: tuple[int, int],
+        weights: Mapping[str, float] | None = None,
+        supersample: int = 2,
+    ) -> npt.NDArray[np.uint8]:
+        """Return the picture (h, w, 3) of the head, with weighted targets if `weights` are given.
+
+        Parameters
+        ----------
+        camera : Camera
+        size : (width, height)
+        weights : mapping of str to float, optional
+        supersample : int
+        """
+        posed = self.posed(weights) if weights else None
+        return render(self.surfaces(posed), camera, size=size, supersample=supersample)
+
+    def _normals(self, placed: FloatArray) -> FloatArray:
+        sums = np.zeros_like(placed)
+        area_normals(placed, self._rig.mesh.triangles, sums)
+        joined = self._joined
+        if joined.is_identity:
+            return sums
+        count = len(joined.first)
+        whole = np.zeros((count, 3))
+        for axis in range(3):
+            whole[:, axis] = np.bincount(joined.representative, sums[:, axis], count)
+        return whole[joined.representative]
+
+
+def _pieces(rig: Rig, positions: FloatArray) -> tuple[_Piece, ...]:
+    """Cut the triangles of a rig by part and material."""
+    triangles = rig.mesh.triangles
+    part = np.full(len(triangles), -1, np.int32)
+    if len(rig.part_of_vertex) and len(triangles):
+        part = rig.part_of_vertex[triangles[:, 0]]
+    material = np.full(len(triangles), -1, np.int32)
+    if len(rig.mesh.materials.of_polygon):
+        material = rig.mesh.materials.of_polygon[rig.mesh.triangle_polygon]
+    kinds = np.unique(np.stack([part, material], axis=1), axis=0).tolist()
+    names = (*rig.part_names, "")
+    labels = (*rig.mesh.materials.names, "")
+    painted = {
+        name: not any(_has_pupil(labels[m]) for p, m in kinds if names[p] == name)
+        for name in names
+        if _is_eye(name)
+    }
+    pieces: list[_Piece] = []
+    for p, m in kinds:
+        faces = triangles[(part == p) & (material == m)]
+        vertices, local = np.unique(faces, return_inverse=True)
+        look = dict(_look(names[p], labels[m]))
+        if painted.get(names[p], False):
+            look.update(_paint(positions, np.flatnonzero(rig.part_of_vertex == p), vertices))
+        pieces.append(
+            _Piece(vertices.astype(np.int32), local.reshape(-1, 3).astype(np.int32), look)
+        )
+    return tuple(pieces)
+
+
+def _is_eye(part: str) -> bool:
+    return part.startswith("eye_")
+
+
+def _has_pupil(material: str) -> bool:
+    return colour_of_material(material) in (
+        colour_of_material("iris"),
+        colour_of_material("pupil"),
+    )
+
+
+def _look(part: str, material: str) -> dict[str, Any]:
+    if part.startswith(_BY_PART):
+        return look_of_material(part)
+    if colour_of_material(material) != colour_of_material(""):
+        return look_of_material(material)
+    return look_of_material("brow" if part == "attached" else part)
+
+
+def _paint(positions: FloatArray, eye: npt.NDArray[np.intp], vertices: IntArray) -> dict[str, Any]:
+    """Return colour and ramp for the vertices of a round eye that has no iris of its own."""
+    if len(eye) < 12:
+        return {}
+    points = positions[eye]
+    _, radius, residual = fit_sphere(points)
+    if residual > _ROUND * radius:
+        return {}
+    colour, ramp = eye_paint(points)
+    place = np.zeros((len(positions), *colour.shape[1:]))
+    place[eye] = colour
+    return {"colour": place[vertices], "ramp": ramp}
