@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import stat
 from collections.abc import Sequence
 from pathlib import Path
@@ -27,19 +28,21 @@ def read_bytes_limited(path: str | Path, *, limit: int = 512 * MEGABYTE) -> byte
     path = Path(path)
     try:
         with path.open("rb") as file:
-            status = path.stat()
+            status = os.fstat(file.fileno())
             if not stat.S_ISREG(status.st_mode):
                 raise FormatError(f"{path}: is not a regular file")
-            data = file.read(limit + 1)
+            if status.st_size > limit:
+                raise FormatError(
+                    f"{path}: larger than {limit // MEGABYTE} MB, the limit for this format"
+                )
+            # Reading up to the limit would set that much memory aside first.
+            return file.read(status.st_size)
     except IsADirectoryError:
         raise FormatError(f"{path}: is a folder, a file was expected") from None
     except FileNotFoundError:
         raise FormatError(f"{path}: no such file") from None
     except (OSError, ValueError) as error:
         raise FormatError(f"{path}: cannot be read ({error})") from error
-    if len(data) > limit:
-        raise FormatError(f"{path}: larger than {limit // MEGABYTE} MB, the limit for this format")
-    return data
 
 
 def read_json(

@@ -122,14 +122,16 @@ def _layout(document: Document, index: object, where: str, width: int) -> _Layou
 def _base(document: Document, layout: _Layout) -> NumberArray:
     """Return the raw components (count, width) before sparse replacement."""
     fields = layout.fields
-    document.spend(layout.count * layout.width, fields.where)
     if "bufferView" in fields:
         offset = fields.integer("byteOffset", default=0)
         data, stride = document.view(fields.value["bufferView"], fields.place("bufferView"))
-        return _strided(data, offset, stride, layout, layout.count)
-    if layout.count > _MOST_UNBACKED:
+        raw = _strided(data, offset, stride, layout, layout.count)
+    elif layout.count > _MOST_UNBACKED:
         raise FormatError(f"{fields.where}: {layout.count} elements without a buffer view")
-    return np.zeros((layout.count, layout.width), layout.dtype)
+    else:
+        raw = np.zeros((layout.count, layout.width), layout.dtype)
+    document.spend(raw.size, fields.where)
+    return raw
 
 
 def _strided(
@@ -155,9 +157,9 @@ def _replaced(document: Document, layout: _Layout) -> tuple[LongArray, NumberArr
         return np.zeros(0, np.int64), np.zeros((0, layout.width), layout.dtype)
     sparse = layout.fields.fields("sparse")
     count = sparse.integer("count", low=1)
-    document.spend(count * layout.width, sparse.where)
     if count > layout.count:
         raise FormatError(f"{sparse.where}: replaces {count} of {layout.count} elements")
+    document.spend(count * layout.width, sparse.where)
     places, values = sparse.fields("indices"), sparse.fields("values")
     component = places.integer("componentType")
     dtype = _COMPONENTS.get(component)
