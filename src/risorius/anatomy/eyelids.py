@@ -186,7 +186,7 @@ def build_eyelids(
     weight[~np.isfinite(margins.distance)] = 0.0
     beside = np.clip(1.0 - np.maximum(-place, place - 1.0) / 0.12, 0.0, 1.0)
     weight = weight * smooth_step(beside) * (arm[:, 2] > 0.0)
-    vertices = np.flatnonzero(weight > 1e-6)
+    vertices = np.flatnonzero(weight > 1e-6).astype(np.int32)
     meet = p.lower_share * opening
     closing = np.where(on_upper, opening - meet, -meet)
     surface, floor = None, np.full(len(vertices), -np.inf)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from risorius._check import FloatArray, IntArray
+from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.head.head import Head
 from risorius.mesh.core import TriMesh
@@ -17,10 +17,20 @@ from risorius.mesh.slit import line_lengths
 
 __all__ = ["jaw_share_inside", "jaw_share_of_skin"]
 
-Fix = Callable[[IntArray, float | FloatArray, float], None]
-
 # Ends of the lip lines over which lower and upper lip fade into the commissure.
 _FADE = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class _Pins:
+    """What is known of a field: targets (n,) and how strongly they are held (n,)."""
+
+    target: FloatArray
+    strength: FloatArray
+
+    def hold(self, where: BoolArray | IntArray, value: float | FloatArray, strength: float) -> None:
+        self.target[where] = value
+        self.strength[where] = strength
 
 
 def jaw_share_of_skin(head: Head, lips: LipSides, hinge: FloatArray) -> FloatArray:
@@ -28,8 +38,7 @@ def jaw_share_of_skin(head: Head, lips: LipSides, hinge: FloatArray) -> FloatArr
 
     Chin and lower lip follow, everything above the upper lip, behind the condyles and down the
     neck stays, the rest is the smoothest field between them: a membrane with a little bending.
-    The lips meet at one half in the commissures. Inside the mouth the lining follows the teeth
-    that it lies on.
+    The lips meet at one half in the commissures; inside the mouth the lining follows its lip.
 
     Parameters
     ----------
@@ -43,13 +52,7 @@ def jaw_share_of_skin(head: Head, lips: LipSides, hinge: FloatArray) -> FloatArr
     points = mesh.positions
     marks = head.landmarks
     width = lips.width
-    target = np.full(len(points), 0.5)
-    hold = np.zeros(len(points))
-
-    def fix(where: IntArray, value: float | FloatArray, strength: float) -> None:
-        hold[where] = strength
-        target[where] = value
-
+    pins = _Pins(np.full(len(points), 0.5), np.zeros(len(points)))
     corners = points[list(lips.slit.corners)]
     eye_floor = float(marks.positions(("3.3", "3.4"))[:, 1].min()) if "3.3" in marks else 0.0
     chin = marks.position("2.1")
@@ -62,40 +65,32 @@ def jaw_share_of_skin(head: Head, lips: LipSides, hinge: FloatArray) -> FloatArr
         | (points[:, 1] < chin[1] - 0.45 * face_height)
         | (_ahead_of_lip(points, nose, width) & ~lips.inside)
     )
-    fix(np.flatnonzero(still), 0.0, 1.0)
+    pins.hold(still, 0.0, 1.0)
     # Follow: the chin, and the skin between chin and lower lip.
     for name in marks.common(("2.1", "2.10")):
         near = np.linalg.norm(points - marks.position(name), axis=1) < 0.22 * width
-        fix(np.flatnonzero(near & ~lips.inside & lips.lower), 1.0, 1.0)
+        pins.hold(near & ~lips.inside & lips.lower, 1.0, 1.0)
     middle = np.abs(points[:, 0] - corners[:, 0].mean())
     body = lips.lower & (lips.to_lower < 0.35 * width) & (middle < 0.28 * width) & ~lips.inside
-    fix(np.flatnonzero(body), 1.0, 1.0)
+    pins.hold(body, 1.0, 1.0)
     philtrum = lips.upper & (lips.to_upper < 0.35 * width) & (middle < 0.3 * width) & ~lips.inside
-    fix(np.flatnonzero(philtrum), 0.0, 1.0)
-    _fix_lining(lips, fix)
+    pins.hold(philtrum, 0.0, 1.0)
+    # The lining follows the lip that it continues. Teeth do not tell: upper incisors hang before
+    # the lower ones, the lining behind the lower lip touches both.
+    share = lips.share()[lips.inside]
+    pins.hold(lips.inside, smooth_step(0.5 + 1.6 * (share - 0.5)), 0.3)
     for line, end in ((lips.slit.upper, 0.0), (lips.slit.lower, 1.0)):
         place = line_lengths(points, line)
         away = smooth_step(np.minimum(place, 1.0 - place) / _FADE)
-        fix(line, 0.5 + (end - 0.5) * away, 4.0)
+        pins.hold(line, 0.5 + (end - 0.5) * away, 4.0)
     # Strengths count against the membrane: 1 holds within two millimetres on an adult mouth.
-    field = SmoothField(mesh, 200.0 * hold, length=0.6 * width, bend=0.12 * width)
-    return np.clip(np.asarray(field.solve(target)).reshape(-1), 0.0, 1.0)
+    field = SmoothField(mesh, 200.0 * pins.strength, length=0.6 * width, bend=0.12 * width)
+    return np.clip(np.asarray(field.solve(pins.target)).reshape(-1), 0.0, 1.0)
 
 
-def _ahead_of_lip(points: FloatArray, nose: FloatArray, width: float) -> FloatArray:
+def _ahead_of_lip(points: FloatArray, nose: FloatArray, width: float) -> BoolArray:
     """Return the mask of the nose: above its base and near the midline."""
     return (points[:, 1] > nose[1]) & (np.abs(points[:, 0] - nose[0]) < 0.45 * width)
-
-
-def _fix_lining(lips: LipSides, fix: Fix) -> None:
-    """Let the lining of the mouth follow the lip that it continues.
-
-    Teeth do not tell: upper incisors hang before the lower ones, the lining behind the lower lip
-    touches both.
-    """
-    inside = np.flatnonzero(lips.inside)
-    share = lips.share()[inside]
-    fix(inside, smooth_step(0.5 + 1.6 * (share - 0.5)), 0.3)
 
 
 def _points_of(head: Head, kinds: tuple[str, ...]) -> FloatArray | None:

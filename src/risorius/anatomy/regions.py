@@ -30,8 +30,8 @@ class Regions:
     Parameters
     ----------
     weights : (n, 4) float64
-        Share of upper, middle and lower face and nose; soft between them on the cheeks and at the eyes,
-        and exactly 0 or 1 on the two lips.
+        Share of upper, middle and lower face and nose; soft between them on the cheeks and at the
+        eyes, and exactly 0 or 1 on the two lips.
     mobility : (n,) float64
         1 where muscles may act, 0 on static skin: back of the head, ears, lids (which have
         their own device), skin behind the lips fades.
@@ -50,7 +50,9 @@ class Regions:
         """
         unknown = [name for name in names if name not in REGIONS]
         if unknown:
-            raise ParameterError(f"regions: {', '.join(unknown)} is not one of {', '.join(REGIONS)}")
+            raise ParameterError(
+                f"regions: {', '.join(unknown)} is not one of {', '.join(REGIONS)}"
+            )
         columns = [REGIONS.index(name) for name in names if name != "static"]
         return self.weights[:, columns].sum(axis=1)
 
@@ -105,7 +107,11 @@ def _lower(lips: LipSides) -> FloatArray:
 def _nose(head: Head, points: FloatArray, height: float) -> FloatArray:
     """Return how far (n,) a vertex belongs to the nose below its root."""
     marks = head.landmarks
-    base = marks.position("9.15") if "9.15" in marks else marks.position("9.3") - [0, 0.09 * height, 0]
+    base = (
+        marks.position("9.15")
+        if "9.15" in marks
+        else marks.position("9.3") - [0.0, 0.09 * height, 0.0]
+    )
     wings = (
         marks.positions(("9.1", "9.2"))[:, 0]
         if "9.1" in marks and "9.2" in marks

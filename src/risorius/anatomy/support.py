@@ -12,9 +12,7 @@ __all__ = ["support_directions"]
 _AXES = (0.62, 1.25, 0.85)
 
 
-def support_directions(
-    points: FloatArray, *, hinge: FloatArray, face_height: float
-) -> FloatArray:
+def support_directions(points: FloatArray, *, hinge: FloatArray, face_height: float) -> FloatArray:
     """Return the outward unit normal (n, 3) of the support beneath each point.
 
     The normals of an ellipsoid about the middle of the condyles: smooth, and the same for the

@@ -57,7 +57,6 @@ def warp_between(
             f"add some of {', '.join(missing[:12])}"
         )
     points = [
-        source.position(name) if isinstance(source, LandmarkSet) else source[name]
-        for name in names
+        source.position(name) if isinstance(source, LandmarkSet) else source[name] for name in names
     ]
     return RbfWarp.fit(points, target.positions(names))

@@ -76,9 +76,7 @@ def find_lids(
     MeshError
         If the margins cannot be traced or are welded together.
     """
-    slit = find_slit(
-        mesh, corners=(inner, outer), upper=[upper], lower=[lower], exact_corners=True
-    )
+    slit = find_slit(mesh, corners=(inner, outer), upper=[upper], lower=[lower], exact_corners=True)
     first, second = mesh.positions[list(slit.corners)]
     width = float(np.linalg.norm(second - first))
     graph = edge_graph(mesh)

@@ -6,10 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from risorius._check import FloatArray
+from risorius._check import FloatArray, IntArray
 from risorius.vectormuscle.muscle import BoundMuscle
 
 __all__ = ["combine"]
+
+Field = tuple[IntArray, FloatArray]
 
 
 def combine(
@@ -37,15 +39,15 @@ def combine(
     if not active:
         return result
     for _ in range(steps):
-        single = [
-            (muscle.vertices, muscle.displace(positions[muscle.vertices] + result[muscle.vertices], share))
-            for muscle, share in active
-        ]
+        single: list[Field] = []
+        for muscle, share in active:
+            here = positions[muscle.vertices] + result[muscle.vertices]
+            single.append((muscle.vertices, muscle.displace(here, share)))
         result += _limited_sum(single, len(positions))
     return result
 
 
-def _limited_sum(single: list[tuple[np.ndarray, FloatArray]], vertex_count: int) -> FloatArray:
+def _limited_sum(single: list[Field], vertex_count: int) -> FloatArray:
     total = np.zeros((vertex_count, 3))
     # Sorting by content makes floating point sums independent of the order of the muscles.
     for vertices, field in sorted(single, key=_key):
@@ -53,24 +55,21 @@ def _limited_sum(single: list[tuple[np.ndarray, FloatArray]], vertex_count: int)
     if len(single) == 1:
         return total
     scale = np.ones(vertex_count)
-    units: list[tuple[np.ndarray, FloatArray]] = []
     for vertices, field in single:
         length = np.linalg.norm(field, axis=1)
-        moved = length > 0.0
-        units.append((vertices[moved], field[moved] / length[moved, None]))
-    for vertices, unit in units:
-        wanted = np.einsum("kd,kd->k", total[vertices], unit)
-        largest = np.zeros(vertex_count)
+        moved = vertices[length > 0.0]
         direction = np.zeros((vertex_count, 3))
-        direction[vertices] = unit
-        for others, field in single:
-            along = np.einsum("kd,kd->k", field, direction[others])
-            np.maximum.at(largest, others, along)
-        ratio = largest[vertices] / np.maximum(wanted, 1e-300)
-        scale[vertices] = np.where(wanted > 0.0, np.minimum(scale[vertices], ratio), scale[vertices])
-    return total * np.minimum(scale, 1.0)[:, None]
+        direction[moved] = field[length > 0.0] / length[length > 0.0, None]
+        largest = np.zeros(vertex_count)
+        for others, other in single:
+            along = np.einsum("kd,kd->k", other, direction[others])
+            largest[others] = np.maximum(largest[others], along)
+        wanted = np.einsum("kd,kd->k", total[moved], direction[moved])
+        ratio = largest[moved] / np.maximum(wanted, 1e-300)
+        scale[moved] = np.where(wanted > 0.0, np.minimum(scale[moved], ratio), scale[moved])
+    return total * scale[:, None]
 
 
-def _key(item: tuple[np.ndarray, FloatArray]) -> tuple[int, bytes]:
+def _key(item: Field) -> tuple[int, bytes]:
     vertices, field = item
-    return len(vertices), field[: min(8, len(field))].tobytes()
+    return len(vertices), field.tobytes()
