@@ -23,7 +23,7 @@ _ATTACHED = (
     "moustache",
     "mustache",
     "stubble",
-    "tearline",
+    "tear",
     "occlusion",
 )
 _SKIN_FIRST = (
