@@ -14,8 +14,8 @@ __all__ = ["Brow", "brow"]
 _COLUMNS = 15
 # inner to outer end in the front view: x, y of the middle line, half height [mm]
 _LINE = np.array(
-    [(10.5, 17.8, 2.4), (19, 19.4, 2.9), (29, 21.4, 2.8), (38.5, 22.2, 2.3), (48, 19.6, 1.7),
-     (56.5, 14.6, 1.2)],
+    [(11, 17.2, 1.9), (19, 19.0, 2.7), (29, 21.2, 2.7), (38.5, 22.2, 2.2), (48, 19.8, 1.6),
+     (56, 15, 1.1)],
     float,
 )  # fmt: skip
 

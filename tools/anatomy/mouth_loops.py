@@ -13,13 +13,13 @@ __all__ = ["BAG_FIRST_ROW", "BORDER_ROW", "COLUMNS_PER_LIP", "lip_sign", "mouth_
 
 COLUMNS_PER_LIP = 14
 # rows between the slit and the vermilion border, as a share of the height of the vermilion
-_VERMILION_ROWS = (0.22, 0.58, 1.0)
+_VERMILION_ROWS = (0.25, 0.6, 1.0)
 BORDER_ROW = len(_VERMILION_ROWS)
 # rows outside of the border [mm]
 _SKIN_ROWS = (2.3, 5.2, 8.8)
 # height of the vermilion from the slit by x / half width: upper, lower [mm]
-_UPPER = ((0.0, 0.2, 0.5, 0.8, 1.0), (6.6, 7.9, 6.0, 3.4, 1.9))
-_LOWER = ((0.0, 0.2, 0.5, 0.8, 1.0), (8.6, 8.5, 7.2, 4.2, 1.9))
+_UPPER = ((0.0, 0.2, 0.5, 0.8, 1.0), (6.6, 7.9, 6.0, 3.2, 1.3))
+_LOWER = ((0.0, 0.2, 0.5, 0.8, 1.0), (8.6, 8.5, 7.2, 4.0, 1.3))
 # inner lips: depth behind the slit, opening to each side [mm]
 _INNER = ((2.2, 0.03), (4.6, 0.7), (6.4, 3.0), (7.0, 7.0))
 # the bag begins behind the first two inner rows
