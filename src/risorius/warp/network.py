@@ -99,7 +99,7 @@ class NetworkWarp:
         if len(centres.source) < 2:
             weights = np.zeros_like(wanted)
         else:
-            weights = _train(matrix, wanted, share, fixed)
+            weights = np.ascontiguousarray(_train(matrix, wanted, share, fixed))
         missed = np.linalg.norm(matrix @ weights - wanted, axis=1).max()
         return NetworkWarp(centres.source, radii, weights, start, float(missed))
 

@@ -251,8 +251,9 @@ def _solve(
     warp = RbfWarp(
         centres=centres.source,
         radii=radii,
-        coefficients=solution[:n],
-        linear=linear + slopes.T @ spanned / centres.scale,
+        # In one order of memory, so that a copy of the warp gives the same bytes.
+        coefficients=np.ascontiguousarray(solution[:n]),
+        linear=np.ascontiguousarray(linear + slopes.T @ spanned / centres.scale),
         offset=middle + shift,
         kernel=kernel,
         residual=0.0,
