@@ -18,11 +18,15 @@ __all__ = [
 ]
 
 MUSCLES = {
+    "frontalis": "raises the whole brow",
     "frontalis_inner": "raises the inner brow",
     "frontalis_outer": "raises the outer brow",
     "corrugator": "draws the brows together and down",
     "orbicularis_oculi": "narrows the eye and raises the cheek below it",
+    "orbicularis_oculi_upper": "lowers the brow towards the eye",
+    "nasalis": "wrinkles the side of the nose",
     "levator_alae_nasi": "raises the nostril wing and the upper lip beside it",
+    "levator_labii_inner": "raises the upper lip beside the nose",
     "levator_labii": "raises the upper lip",
     "zygomaticus_minor": "raises the upper lip outwards",
     "zygomaticus_major": "pulls the mouth corner up and back",

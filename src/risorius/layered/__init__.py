@@ -1,0 +1,1 @@
+"""The layered anatomical face: muscles in layers on a skull move the skin."""
