@@ -18,6 +18,7 @@ from risorius.vectormuscle.combine import combine
 from risorius.vectormuscle.muscle import BoundMuscle, FaceContext
 from risorius.vectormuscle.profile import AngularProfile
 from risorius.vectormuscle.vector_set import VectorSet, default_vector_set
+from risorius.vectormuscle.wrinkle import BoundWrinkles, bind_all_wrinkles, raise_wrinkles
 
 __all__ = ["Profile", "VectorFace", "VectorParameters"]
 
@@ -64,6 +65,10 @@ class VectorFace:
     bound : mapping of str to BoundMuscle
     controls : tuple of Control
     parameters : VectorParameters
+    wrinkles : mapping of str to BoundWrinkles
+        Of the muscles that make any.
+    notes : tuple of str
+        What was left out, and why.
     """
 
     head: Head
@@ -72,6 +77,8 @@ class VectorFace:
     bound: Mapping[str, BoundMuscle]
     controls: tuple[Control, ...]
     parameters: VectorParameters
+    wrinkles: Mapping[str, BoundWrinkles]
+    notes: tuple[str, ...]
 
     @staticmethod
     def build(
@@ -112,14 +119,19 @@ class VectorFace:
             mesh.positions, normals, moving, regions, chosen.angular, outward, chosen.support
         )
         bound = {muscle.name: muscle.bind(context) for muscle in fitted.muscles}
+        wrinkles, notes = bind_all_wrinkles(fitted.muscles, context, faces=mesh.faces)
         controls = _muscle_controls(tuple(bound)) + moving.controls
-        return VectorFace(head, fitted, moving, bound, controls, chosen)
+        notes = moving.notes + notes
+        return VectorFace(head, fitted, moving, bound, controls, chosen, wrinkles, notes)
 
     def displace_skin(self, values: Mapping[str, float]) -> FloatArray:
         """Return the displacement (w, 3) [mm] of the welded skin by muscles alone."""
         rest = self.head.skin.mesh.positions
         active = [(muscle, values.get(name, 0.0)) for name, muscle in self.bound.items()]
-        return combine(active, rest, steps=self.parameters.steps)
+        moved = combine(active, rest, steps=self.parameters.steps)
+        folds = [(wrinkles, values.get(name, 0.0)) for name, wrinkles in self.wrinkles.items()]
+        raised = raise_wrinkles(folds, len(rest))
+        return moved if raised is None else moved + raised
 
     def displace(self, pose: Pose) -> FloatArray:
         """Return the displacement (n, 3) [mm, canonical frame] of every input vertex.

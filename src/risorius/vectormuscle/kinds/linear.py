@@ -22,6 +22,7 @@ from risorius.vectormuscle.muscle import (
     register_kind,
 )
 from risorius.vectormuscle.profile import angular_factor, fold_limit, radial_factor
+from risorius.vectormuscle.wrinkle import Wrinkles, WrinkleZone, read_wrinkles
 
 __all__ = ["BoundLinear", "LinearMuscle"]
 
@@ -29,6 +30,8 @@ __all__ = ["BoundLinear", "LinearMuscle"]
 _PULL = 0.4
 # Skin that slides instead of sinking keeps its length up to this factor.
 _MOST_STRETCH = 1.6
+# Wrinkles begin at this share of the start radius: at the bone there is no skin to fold.
+_FIRST_WRINKLE = 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +57,8 @@ class LinearMuscle:
     corner : float
         How far the muscle holds the mouth corner and lets the body of the lips lag: 0 pulls the
         whole lip, 1 leaves its middle.
+    wrinkles : Wrinkles, optional
+        Across the muscle, between a fifth of the start radius and the start radius.
     """
 
     name: str
@@ -66,6 +71,7 @@ class LinearMuscle:
     regions: tuple[str, ...] = ()
     out: float = 0.0
     corner: float = 0.0
+    wrinkles: Wrinkles | None = None
 
     def __post_init__(self) -> None:
         if float(np.linalg.norm(self.insertion - self.origin)) == 0.0:
@@ -130,14 +136,25 @@ class LinearMuscle:
         )
         return np.where(distance > 0.0, radial * angular, 0.0)
 
-    def bind(self, context: FaceContext) -> BoundLinear:
-        """Precompute the zone: permitted vertices with an effect."""
+    def _effect(self, context: FaceContext) -> FloatArray:
+        """Return the effect (n,) on the skin of a face, where it is permitted."""
         effect = self.influence(context.positions, smooth=context.angular == "smooth")
         if self.regions:
             effect = effect * context.regions.permission(self.regions)
         if self.corner:
             effect = effect * (1.0 - self.corner * _lip_body(context))
-        effect = effect * context.regions.mobility
+        return effect * context.regions.mobility
+
+    def wrinkle_zone(self, context: FaceContext) -> WrinkleZone:
+        """Return where the skin is compressed: between the origin and the start radius."""
+        near = _FIRST_WRINKLE * self.start_radius
+        length = self.start_radius - near
+        distance = np.linalg.norm(context.positions - self.origin, axis=1)
+        return WrinkleZone((distance - near) / length, self._effect(context), length)
+
+    def bind(self, context: FaceContext) -> BoundLinear:
+        """Precompute the zone: permitted vertices with an effect."""
+        effect = self._effect(context)
         vertices = np.flatnonzero(effect > 0.0).astype(np.int32)
         return BoundLinear(
             vertices,
@@ -166,6 +183,8 @@ class LinearMuscle:
         for key, value in (("out", self.out), ("corner", self.corner)):
             if value:
                 entry[key] = value
+        if self.wrinkles:
+            entry["wrinkles"] = self.wrinkles.to_json()
         return entry
 
 
@@ -244,6 +263,7 @@ def _read(entry: Mapping[str, Any], where: str) -> LinearMuscle:
         read_regions(entry, where),
         number["out"],
         number["corner"],
+        read_wrinkles(entry, where),
     )
 
 

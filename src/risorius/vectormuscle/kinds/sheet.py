@@ -21,6 +21,7 @@ from risorius.vectormuscle.muscle import (
     read_vector,
     register_kind,
 )
+from risorius.vectormuscle.wrinkle import Wrinkles, WrinkleZone, read_wrinkles
 
 __all__ = ["SheetMuscle"]
 
@@ -49,6 +50,8 @@ class SheetMuscle:
         Reach of the fade beyond the ends, shares of L.
     regions : tuple of str
         Regions it may move; empty for all.
+    wrinkles : Wrinkles, optional
+        Across the fibres, between origin and insertion.
     """
 
     name: str
@@ -60,6 +63,7 @@ class SheetMuscle:
     fade_origin: float = 0.3
     fade_insertion: float = 0.4
     regions: tuple[str, ...] = ()
+    wrinkles: Wrinkles | None = None
 
     def __post_init__(self) -> None:
         if float(np.linalg.norm(self.insertion - self.origin)) == 0.0:
@@ -95,21 +99,33 @@ class SheetMuscle:
         below = smooth_step(1.0 - (place - 1.0) / self.fade_insertion)
         return np.where(place < 0.0, above, np.where(place > 1.0, below, inner))
 
-    def bind(self, context: FaceContext) -> BoundField:
-        """Precompute the field at contraction 1."""
-        fibre = self.insertion - self.origin
-        length = float(np.linalg.norm(fibre))
-        axis = fibre / length
+    @property
+    def length(self) -> float:
+        """Length of the fibres [mm]."""
+        return float(np.linalg.norm(self.insertion - self.origin))
+
+    @property
+    def axis(self) -> FloatArray:
+        """Direction (3,) of the fibres, from origin to insertion."""
+        return (self.insertion - self.origin) / self.length
+
+    def wrinkle_zone(self, context: FaceContext) -> WrinkleZone:
+        """Return where the skin is compressed: between origin and insertion."""
         offset = context.positions - self.origin
-        place = offset @ axis / length
         # The skull is round: distance sideways is measured along the face, not in depth.
-        across = np.cross(axis, np.array([0.0, 0.0, 1.0]))
+        across = np.cross(self.axis, np.array([0.0, 0.0, 1.0]))
         across /= np.linalg.norm(across)
         aside = np.abs(offset @ across) / self.half_width
-        effect = self.profile(place) * np.where(aside < 1.0, np.cos(0.5 * np.pi * aside) ** 2, 0.0)
+        effect = np.where(aside < 1.0, np.cos(0.5 * np.pi * aside) ** 2, 0.0)
         if self.regions:
             effect = effect * context.regions.permission(self.regions)
         effect = effect * context.regions.mobility
+        return WrinkleZone(offset @ self.axis / self.length, effect, self.length)
+
+    def bind(self, context: FaceContext) -> BoundField:
+        """Precompute the field at contraction 1."""
+        zone, axis = self.wrinkle_zone(context), self.axis
+        effect = self.profile(zone.place) * zone.effect
         vertices = np.flatnonzero(effect != 0.0).astype(np.int32)
         # Each point moves along its own support, so that the forehead keeps its curve.
         outward = context.outward[vertices]
@@ -132,6 +148,8 @@ class SheetMuscle:
         }
         if self.regions:
             entry["regions"] = list(self.regions)
+        if self.wrinkles:
+            entry["wrinkles"] = self.wrinkles.to_json()
         return entry
 
 
@@ -146,6 +164,7 @@ def _read(entry: Mapping[str, Any], where: str) -> SheetMuscle:
         as_number(f"{where}: fade_origin", entry.get("fade_origin", 0.3), low=1e-6),
         as_number(f"{where}: fade_insertion", entry.get("fade_insertion", 0.4), low=1e-6),
         read_regions(entry, where),
+        read_wrinkles(entry, where),
     )
 
 
