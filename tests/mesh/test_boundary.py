@@ -68,6 +68,14 @@ def test_two_sheets_that_touch_in_one_vertex_are_two_loops():
     assert [loop.tolist() for loop in boundary_loops(faces)] == [[0, 1, 2], [0, 3, 4]]
 
 
+def test_two_sheets_that_touch_in_two_vertices_keep_their_own_loops():
+    # Vertices 0 and 2 belong to both; any other pairing of their border edges mixes the sheets.
+    first = [[0, 1, 2], [0, 2, 5]]
+    second = [[0, 3, 6], [3, 2, 6], [2, 4, 6], [4, 0, 6]]
+    loops = boundary_loops(np.array(first + second, np.int32))
+    assert [loop.tolist() for loop in loops] == [[0, 1, 2, 5], [0, 3, 2, 4]]
+
+
 def test_loops_survive_inconsistent_faces():
     mesh = grid(3, 3)
     faces = mesh.faces.copy()

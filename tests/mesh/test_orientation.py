@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from risorius.errors import MeshError
 from risorius.mesh.core import TriMesh
 from risorius.mesh.topology import orient, report
-from tests.mesh.shapes import grid, joined, sphere, star_of, torus, without_faces
+from tests.mesh.shapes import cube, grid, joined, sphere, star_of, torus, without_faces
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 1.0))
@@ -42,6 +42,20 @@ def test_a_flat_sheet_keeps_the_side_of_its_majority():
     np.testing.assert_array_equal(result.faces, mesh.faces)
     back = mesh.faces[:, [0, 2, 1]]
     np.testing.assert_array_equal(orient(mesh.positions, back).faces, back)
+
+
+def test_a_curled_sheet_is_no_solid_and_stays():
+    mesh = grid(6, 2, width=3.0)
+    height = 0.02 * mesh.positions[:, 0] ** 2
+    bent = mesh.positions + height[:, None] * np.array([0.0, 0.0, 1.0])
+    for faces in (mesh.faces, mesh.faces[:, [0, 2, 1]]):
+        assert not orient(bent, faces).flipped.any()
+
+
+def test_a_thin_closed_solid_looks_outwards():
+    box = cube().positions * [1.0, 1.0, 1e-4]
+    assert orient(box, cube().faces[:, [0, 2, 1]]).flipped.all()
+    assert not orient(box, cube().faces).flipped.any()
 
 
 def test_a_mask_with_holes_looks_outwards():

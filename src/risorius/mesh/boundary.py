@@ -97,8 +97,6 @@ def _next_edge(faces: IntArray, table: EdgeFaces, edge: int, vertex: int) -> int
         edge = around[0] if around[1] == edge else around[1]
         if table.counts[edge] == 1:
             return edge
-        if table.counts[edge] > 2:
-            return -1
         first, second = table.faces[edge].tolist()
         face = second if first == face else first
     return -1

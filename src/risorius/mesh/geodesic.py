@@ -256,6 +256,4 @@ def _edge_graph(
         closed[free] = False
         leaves = ~closed[both[:, 0]]
         both, length = both[leaves], length[leaves]
-    # A zero would count as no edge.
-    length = np.maximum(length, np.finfo(np.float64).tiny)
     return csr_matrix((length, (both[:, 0], both[:, 1])), shape=(n, n))

@@ -15,8 +15,10 @@ from risorius.mesh.volume import capped_volumes
 
 __all__ = ["Orientation", "agreeing_edges", "orient"]
 
-# Below this share of area^1.5 a piece encloses nothing worth a decision (a flat sheet).
-_FLAT = 1e-3
+# Share of area^1.5 (a sphere: 0.094) that a piece must enclose to have an outside. Open pieces
+# below it are sheets, like lashes, whose capped volume says nothing.
+_SHEET = 0.02
+_CLOSED_SHEET = 1e-9
 
 
 class Orientation(NamedTuple):
@@ -54,8 +56,8 @@ def orient(positions: FloatArray, faces: IntArray) -> Orientation:
 
     Neighbours across edges of exactly two faces are made to agree; of the two choices that a
     patch then has, it takes the one that turns fewer faces. After that each loose piece whose
-    volume (holes capped) is negative is turned as a whole. Flat sheets enclose nothing and keep
-    the side of their majority.
+    volume (holes capped) is negative is turned as a whole. Open sheets that enclose little, like
+    lashes, keep the side of their majority.
 
     Parameters
     ----------
@@ -80,7 +82,9 @@ def orient(positions: FloatArray, faces: IntArray) -> Orientation:
     corners = positions[result]
     doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.bincount(pieces.of_face, 0.5 * np.linalg.norm(doubled, axis=1), pieces.piece_count)
-    inward = volume < -_FLAT * area**1.5
+    open_pieces = np.zeros(pieces.piece_count, bool)
+    open_pieces[pieces.of_face[table.faces[table.counts == 1, 0]]] = True
+    inward = volume < -np.where(open_pieces, _SHEET, _CLOSED_SHEET) * area**1.5
     turn = inward[pieces.of_face]
     result[turn] = result[turn][:, [0, 2, 1]]
     return Orientation(result, flipped ^ turn)
