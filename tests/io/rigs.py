@@ -63,7 +63,7 @@ def make_mesh() -> PolygonMesh:
         uvs=uvs,
         uv_corners=uv_corners,
         objects=Labels(("Head", "Teeth"), np.array([0, 1, -1], np.int32)[kind]),
-        groups=Labels(("upper half", "lower"), (centre[:, 1] < 0).astype(np.int32)),
+        groups=Labels(("lower", "upper half"), (centre[:, 1] >= 0).astype(np.int32)),
         materials=Labels(
             ("Face", "Lips ü", "enamel"),
             np.where(lips, 1, np.array([0, 2, -1])[kind]).astype(np.int32),

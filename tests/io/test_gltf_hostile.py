@@ -21,7 +21,7 @@ from tests.io.test_gltf_read import CORNERS, morphing
 
 Change = Callable[[dict[str, Any]], object]
 HUGE = 2**31 - 1
-LARGE = {"scale": [1e300] * 3}
+LARGE = {"scale": [1e30] * 3}
 
 
 def accessor(key: str, value: object, index: int = 0) -> Change:
@@ -102,7 +102,7 @@ def sparse(rows: list[int], **fields: object) -> Change:
         (node(matrix=[1] * 15), "list of 16 numbers"),
         (node(rotation=[0, 0, 0, 0]), "no rotation"),
         (node(scale=["big", 1, 1]), "expected a number"),
-        (node(scale=[1e300, 1e300, 1e300], translation=[0, 0, 0]), None),
+        (node(scale=[1e300, 1, 1]), "must lie within 3e"),
         (top("nodes", [{**LARGE, "children": [1]}, {**LARGE, "mesh": 0}]), "to infinity"),
         (top("scenes", [{"nodes": [0, 0]}]), "is reached twice"),
         (top("scenes", [{"nodes": []}]), "shows no triangles"),
@@ -129,16 +129,13 @@ def sparse(rows: list[int], **fields: object) -> Change:
         (primitive("extras", {"targetNames": [1]}), "expected a list of texts"),
     ],
 )  # fmt: skip
-def test_contradictory_json_is_refused(tmp_path: Path, change: Change, message: str | None):
+def test_contradictory_json_is_refused(tmp_path: Path, change: Change, message: str):
     maker = Maker()
     maker.primitive(CORNERS[:3], np.array([2, 0, 1, 0], "<u1")[:3])
     document, binary = unpack(maker.glb())
     change(document)
     path = tmp_path / "x.glb"
     path.write_bytes(pack(document, binary))
-    if message is None:
-        read_gltf_head(path)
-        return
     tracemalloc.start()
     with pytest.raises(FormatError, match=message) as caught:
         read_gltf_head(path)

@@ -244,8 +244,8 @@ def test_polygons_of_two_corners_do_no_harm():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ("positions", "the neutral has a number"),
-        ("deltas", "target 'jawOpen' has a number"),
+        ("positions", "the neutral: row 5"),
+        ("deltas", "target 'jawOpen': row 0"),
         ("corners", "needs polygons"),
     ],
 )

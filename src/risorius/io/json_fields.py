@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any, cast
 
 from risorius.errors import FormatError
+from risorius.io.finite import LARGEST
 
 __all__ = ["LARGEST_INDEX", "Fields"]
 
@@ -106,4 +107,6 @@ def finite_number(value: object, where: str) -> float:
     """Return `value` as float if it is a number (infinite ones are no JSON)."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise FormatError(f"{where}: expected a number")
+    if abs(value) > LARGEST:
+        raise FormatError(f"{where}: must lie within {LARGEST:g}")
     return float(value)

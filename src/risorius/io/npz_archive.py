@@ -19,6 +19,7 @@ import numpy.typing as npt
 from risorius._check import FloatArray, IntArray
 from risorius.errors import FormatError
 from risorius.io.bounded import MEGABYTE, read_bytes_limited
+from risorius.io.finite import as_doubles, require_finite
 
 __all__ = ["Archive"]
 
@@ -26,7 +27,7 @@ _LIMIT = 512 * MEGABYTE
 _UNPACKED_LIMIT = 2048 * MEGABYTE
 _MAGIC = b"\x93NUMPY\x01\x00"
 _HEADER = re.compile(
-    rb"\{'descr': '([<|][fiuU]\d{1,9})', 'fortran_order': False, "
+    rb"\{'descr': '([<|](?:f[248]|[iu][1248]|U[1-9]\d{0,8}))', 'fortran_order': False, "
     rb"'shape': \(((?:\d{1,18}, ?)*(?:\d{1,18})?)\), \}\s*"
 )
 # Everything that the standard library raises on broken archives.
@@ -68,22 +69,31 @@ class Archive:
 
     def text(self, name: str) -> str:
         """Return a single text."""
-        values = self._array(name, "U", 0)
-        with self._refusing(name):
-            return str(values[()])
+        with self._open(name) as (file, dtype, shape):
+            return self._texts(name, file.read(), dtype, shape, 0)[0]
 
     def texts(self, name: str) -> list[str]:
         """Return texts (k,)."""
-        values = self._array(name, "U", 1)
-        with self._refusing(name):
-            return [str(value) for value in values]
+        with self._open(name) as (file, dtype, shape):
+            return self._texts(name, file.read(), dtype, shape, 1)
+
+    def _texts(
+        self, name: str, data: bytes, dtype: np.dtype[Any], shape: tuple[int, ...], dimensions: int
+    ) -> list[str]:
+        if dtype.kind != "U" or len(shape) != dimensions:
+            raise self._unexpected(name, dtype, shape)
+        size = dtype.itemsize
+        return [
+            data[size * row : size * (row + 1)].decode("utf-32-le").rstrip("\0")
+            for row in range(math.prod(shape))
+        ]
 
     def floats(self, name: str, width: int) -> FloatArray:
         """Return finite numbers (k, width)."""
-        values = self._array(name, "f", 2).astype(np.float64)
+        values = as_doubles(self._array(name, "f", 2))
         if values.shape[1] != width:
             raise FormatError(f"{self.path}: {name}: expected {width} columns")
-        _require_finite(values, f"{self.path}: {name}")
+        require_finite(values, f"{self.path}: {name}")
         return values
 
     def integers(self, name: str, *, high: int) -> IntArray:
@@ -100,20 +110,21 @@ class Archive:
                 raise FormatError(f"{self.path}: {name}: expected numbers of shape {shape}")
             size = math.prod(shape[1:]) * dtype.itemsize
             for index in range(shape[0]):
-                with self._refusing(name):
-                    row = np.frombuffer(file.read(size), dtype).reshape(shape[1:])
-                values = row.astype(np.float64)
-                _require_finite(values, f"{self.path}: {name}[{index}]")
+                row = np.frombuffer(file.read(size), dtype).reshape(shape[1:])
+                values = as_doubles(row)
+                require_finite(values, f"{self.path}: {name}[{index}]")
                 yield values
 
     def _array(self, name: str, kinds: str, dimensions: int) -> npt.NDArray[Any]:
         with self._open(name) as (file, dtype, shape):
             if dtype.kind not in kinds or len(shape) != dimensions:
-                raise FormatError(
-                    f"{self.path}: {name}: holds {dtype} of shape {shape}, which is not expected"
-                )
-            with self._refusing(name):
-                return np.frombuffer(file.read(), dtype).reshape(shape)
+                raise self._unexpected(name, dtype, shape)
+            return np.frombuffer(file.read(), dtype).reshape(shape)
+
+    def _unexpected(self, name: str, dtype: np.dtype[Any], shape: tuple[int, ...]) -> FormatError:
+        return FormatError(
+            f"{self.path}: {name}: holds {dtype} of shape {shape}, which is not expected"
+        )
 
     @contextmanager
     def _open(self, name: str) -> Generator[tuple[IO[bytes], np.dtype[Any], tuple[int, ...]]]:
@@ -122,17 +133,13 @@ class Archive:
             raise FormatError(f"{self.path}: has no array {name!r}; is it a rig of risorius?")
         if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise FormatError(f"{self.path}: {name}: compressed in a way that is not read")
-        with self._refusing(name):
-            file = self._zip.open(entry)
-        with file:
-            with self._refusing(name):
-                start = file.read(10)
-                length = int.from_bytes(start[8:], "little")
-                header = _HEADER.fullmatch(file.read(length))
+        with self._refusing(name), self._zip.open(entry) as file:
+            start = file.read(10)
+            length = int.from_bytes(start[8:], "little")
+            header = _HEADER.fullmatch(file.read(length))
             if not start.startswith(_MAGIC) or header is None:
                 raise FormatError(f"{self.path}: {name}: has no plain array header")
-            with self._refusing(name):
-                dtype = np.dtype(header[1].decode())
+            dtype = np.dtype(header[1].decode())
             shape = tuple(int(number) for number in header[2].replace(b",", b" ").split())
             if math.prod(shape) * dtype.itemsize != entry.file_size - 10 - length:
                 raise FormatError(
@@ -147,10 +154,3 @@ class Archive:
         except _BROKEN as error:
             place = f"{name}: " if name else ""
             raise FormatError(f"{self.path}: {place}broken archive ({error})") from error
-
-
-def _require_finite(values: FloatArray, where: str) -> None:
-    bad = ~np.isfinite(values).all(axis=-1)
-    if bad.any():
-        row = int(np.argmax(bad))
-        raise FormatError(f"{where}: row {row} is {values[row].tolist()}, it must be finite")

@@ -18,6 +18,7 @@ from risorius._check import FloatArray
 from risorius._formats import Format, register
 from risorius.errors import FormatError, RisoriusWarning
 from risorius.io.bounded import MEGABYTE, read_bytes_limited
+from risorius.io.finite import LARGEST, first_bad_row
 from risorius.io.obj_corners import NO_UV, OUT_OF_RANGE, Corners, LongArray, read_corners
 from risorius.landmarks.landmark_set import LandmarkSpec
 from risorius.mesh.polygon_mesh import Labels, PolygonMesh
@@ -235,17 +236,20 @@ def _numbers(
         tokens = [(row + [b"0"] * keep)[:keep] for row in tokens]
     try:
         values = np.array(list(map(float, chain.from_iterable(tokens)))).reshape(-1, keep)
-        if np.isfinite(values).all() and not any(b"_" in row for row in block):
+        if first_bad_row(values) is None and not any(b"_" in row for row in block):
             return values
     except ValueError:
         pass  # the slow way below finds the line
     bad = next(i for i, row in enumerate(tokens) if not all(map(_is_number, row)))
-    raise FormatError(f"{where}: line {line + bad}: {_shown(block[bad])} must hold finite numbers")
+    raise FormatError(
+        f"{where}: line {line + bad}: {_shown(block[bad])} must hold finite numbers, none beyond "
+        f"{LARGEST:g}"
+    )
 
 
 def _is_number(token: bytes) -> bool:
     try:
-        return b"_" not in token and bool(np.isfinite(float(token)))
+        return b"_" not in token and abs(float(token)) <= LARGEST
     except ValueError:
         return False
 

@@ -78,5 +78,6 @@ def _changes(labels: Labels) -> list[tuple[int, str]]:
         return []
     before = np.concatenate([[-1], labels.of_polygon[:-1]])
     places = np.flatnonzero(labels.of_polygon != before)
-    names = [*(" ".join(name.split()) for name in labels.names), ""]
+    # Neither a line end nor a continued line may stand in a name.
+    names = [*(" ".join(name.split()).rstrip("\\ ") for name in labels.names), ""]
     return [(int(place), names[labels.of_polygon[place]]) for place in places]

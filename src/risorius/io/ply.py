@@ -17,6 +17,7 @@ from risorius._check import FloatArray, IntArray
 from risorius._formats import Format, register
 from risorius.errors import FormatError
 from risorius.io.bounded import MEGABYTE, read_bytes_limited
+from risorius.io.finite import as_doubles, require_finite
 from risorius.io.ply_elements import Column, Element, read_elements
 from risorius.landmarks.landmark_set import LandmarkSpec
 from risorius.mesh.polygon_mesh import PolygonMesh
@@ -54,8 +55,8 @@ def parse_ply(data: bytes, where: str) -> PolygonMesh:
     vertices = columns.get("vertex", {})
     if not all(axis in vertices for axis in "xyz"):
         raise FormatError(f"{where}: has no vertices with x, y and z")
-    positions = np.stack([vertices[axis].values for axis in "xyz"], axis=1).astype(np.float64)
-    _require_finite(positions, where)
+    positions = as_doubles(np.stack([vertices[axis].values for axis in "xyz"], axis=1))
+    require_finite(positions, where)
     corners, sizes = _polygons(columns.get("face", {}), len(positions), where)
     uvs, uv_corners = _uvs(columns, corners, sizes, where)
     return PolygonMesh(
@@ -129,23 +130,16 @@ def _uvs(
     vertices, faces = columns["vertex"], columns.get("face", {})
     none = np.zeros(0, np.int32)
     if "texcoord" in faces and np.array_equal(faces["texcoord"].sizes, 2 * sizes):
-        uvs = faces["texcoord"].values.astype(np.float64).reshape(-1, 2)
+        uvs = as_doubles(faces["texcoord"].values).reshape(-1, 2)
         uv_corners = np.arange(len(corners), dtype=np.int32)
     else:
         names = next((pair for pair in _UV_NAMES if all(n in vertices for n in pair)), None)
         if names is None:
             return np.zeros((0, 2)), none
-        uvs = np.stack([vertices[name].values for name in names], axis=1).astype(np.float64)
+        uvs = as_doubles(np.stack([vertices[name].values for name in names], axis=1))
         uv_corners = corners
-    _require_finite(uvs, where)
+    require_finite(uvs, where)
     return uvs, uv_corners if len(uvs) else none
-
-
-def _require_finite(values: FloatArray, where: str) -> None:
-    bad = ~np.isfinite(values).all(axis=1)
-    if bad.any():
-        row = int(np.argmax(bad))
-        raise FormatError(f"{where}: row {row} is {values[row].tolist()}, it must be finite")
 
 
 register(Format("ply", (".ply",), read_head=read_ply))

@@ -12,6 +12,7 @@ from risorius._check import FloatArray
 from risorius._formats import Format, register
 from risorius.errors import FormatError
 from risorius.io.bounded import MEGABYTE, read_bytes_limited
+from risorius.io.finite import as_doubles, require_finite
 from risorius.landmarks.landmark_set import LandmarkSpec
 from risorius.mesh.polygon_mesh import PolygonMesh
 
@@ -49,7 +50,7 @@ def parse_stl(data: bytes, where: str) -> PolygonMesh:
     is_text = data.lstrip()[:5].lower() == b"solid"
     if len(data) == expected or (not is_text and _HEADER < expected < len(data)):
         corners = np.frombuffer(data, _FACET, count, _HEADER)["corners"].reshape(-1, 3)
-        corners = corners.astype(np.float64)
+        corners = as_doubles(corners)
     elif is_text:
         corners = _ascii_corners(data, where)
     else:
@@ -57,13 +58,7 @@ def parse_stl(data: bytes, where: str) -> PolygonMesh:
             f"{where}: {len(data)} bytes are no binary STL of {count} triangles ({expected} bytes) "
             "and no text that begins with 'solid'; is the file cut off?"
         )
-    bad = ~np.isfinite(corners).all(axis=1)
-    if bad.any():
-        corner = int(np.argmax(bad))
-        raise FormatError(
-            f"{where}: triangle {corner // 3} has a corner at {corners[corner].tolist()}, it must "
-            "be finite"
-        )
+    require_finite(corners, where, row_name="corner")
     if not len(corners):
         raise FormatError(f"{where}: has no triangles")
     return _joined(corners)

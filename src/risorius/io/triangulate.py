@@ -9,6 +9,8 @@ from risorius.mesh.polygon_mesh import PolygonMesh
 
 __all__ = ["triangulate"]
 
+_HAIR = 1e-12  # share of a polygon's size squared that counts as no area
+
 
 def triangulate(mesh: PolygonMesh) -> IntArray:
     """Return the corner indices (t, 3) of triangles in polygon order.
@@ -48,31 +50,35 @@ def _in_plane(points: FloatArray, normal: FloatArray) -> FloatArray:
 
 def _ears(points: FloatArray) -> IntArray | None:
     """Return the triangles (k - 2, 3) of a simple polygon (k, 2), or None if it is not simple."""
+    hair = _HAIR * float(np.ptp(points, axis=0).max()) ** 2
     left = list(range(len(points)))
     triangles: list[tuple[int, int, int]] = []
     while len(left) > 3:
-        for place in range(len(left)):
-            ear = left[place - 1], left[place], left[(place + 1) % len(left)]
-            others = [corner for corner in left if corner not in ear]
-            if _is_ear(points[list(ear)], points[others]):
-                triangles.append(ear)
-                del left[place]
-                break
-        else:
+        # Ears that nothing touches come first; collinear corners may leave only others.
+        place = _find_ear(points, left, hair)
+        place = _find_ear(points, left, -hair) if place is None else place
+        if place is None:
             return None
+        triangles.append((left[place - 1], left[place], left[(place + 1) % len(left)]))
+        del left[place]
     triangles.append((left[0], left[1], left[2]))
     return np.array(triangles, np.int32)
 
 
-def _is_ear(corners: FloatArray, others: FloatArray) -> bool:
-    """Return whether a corner sticks out and no other corner lies in or on its triangle."""
-    if _side(corners[0], corners[1], corners[2]) <= 0.0:
-        return False
-    inside = np.ones(len(others), bool)
-    for first in range(3):
-        a, b = corners[first], corners[(first + 1) % 3]
-        inside &= _side(a, b, others) >= 0.0
-    return not inside.any()
+def _find_ear(points: FloatArray, left: list[int], hair: float) -> int | None:
+    """Return the place of a corner that sticks out with no other corner in its triangle.
+
+    A positive `hair` asks for a real area and keeps corners off the border too, a negative one
+    allows both.
+    """
+    for place in range(len(left)):
+        ear = [left[place - 1], left[place], left[(place + 1) % len(left)]]
+        a, b, c = points[ear]
+        others = points[[corner for corner in left if corner not in ear]]
+        nearest = np.minimum.reduce([_side(a, b, others), _side(b, c, others), _side(c, a, others)])
+        if _side(a, b, c) > hair and not (nearest >= -hair).any():
+            return place
+    return None
 
 
 def _side(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:

@@ -22,6 +22,7 @@ from risorius._formats import Format, register
 from risorius.errors import FormatError
 from risorius.head.frame import Frame
 from risorius.io.atomic import atomic_write
+from risorius.io.finite import require_finite
 from risorius.io.looks import look_of
 from risorius.io.rig_json import rig_to_json
 from risorius.io.usd_mesh import PartMesh, PartShape, part_meshes
@@ -60,6 +61,7 @@ def write_usd(rig: Rig, path: str | Path, *, animation: bool = False) -> None:
     pxr = _library()
     path = Path(path)
     parts = part_meshes(rig)
+    require_finite(rig.mesh.positions, f"{path}: the neutral")
     if not parts:
         raise FormatError(f"{path}: USD needs polygons, the rig has only vertices")
     stage = _stage(rig, parts, animation=animation)

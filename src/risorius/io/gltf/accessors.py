@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from risorius._check import FloatArray
 from risorius.errors import FormatError
+from risorius.io.finite import as_doubles, require_finite
 from risorius.io.gltf.document import Document
 from risorius.io.json_fields import Fields
 
@@ -44,7 +45,7 @@ class _Layout:
 
     def floats(self, raw: NumberArray) -> FloatArray:
         """Return raw components as float64, normalised integers in -1..1."""
-        values = raw.astype(np.float64)
+        values = as_doubles(raw)
         if self.normalised and self.dtype.kind in "iu":
             bits = 8 * self.dtype.itemsize - (self.dtype.kind == "i")
             values = np.maximum(values / (2.0**bits - 1.0), -1.0)
@@ -69,7 +70,7 @@ def read_floats(document: Document, index: object, where: str, *, width: int) ->
     values = layout.floats(_base(document, layout))
     rows, replaced = _replaced(document, layout)
     values[rows] = layout.floats(replaced)
-    _require_finite(values, layout)
+    require_finite(values, layout.fields.where)
     return values
 
 
@@ -90,7 +91,7 @@ def read_rows(
         dense[rows] = values
         rows = np.arange(count, dtype=np.int64)
         values = dense
-    _require_finite(values, layout)
+    require_finite(values, layout.fields.where)
     moves = values.any(axis=1)
     return rows[moves], values[moves]
 
@@ -176,13 +177,3 @@ def _replaced(document: Document, layout: _Layout) -> tuple[LongArray, NumberArr
 def _part(document: Document, fields: Fields, layout: _Layout) -> NumberArray:
     data, _ = document.view(fields.value.get("bufferView"), fields.place("bufferView"))
     return _strided(data, fields.integer("byteOffset", default=0), None, layout, layout.count)
-
-
-def _require_finite(values: FloatArray, layout: _Layout) -> None:
-    bad = ~np.isfinite(values).all(axis=1)
-    if bad.any():
-        row = int(np.argmax(bad))
-        raise FormatError(
-            f"{layout.fields.where}: row {row} is {values[row].tolist()}, every number must be "
-            "finite"
-        )

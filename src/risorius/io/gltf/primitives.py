@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from risorius._check import FloatArray
 from risorius.errors import FormatError
+from risorius.io.finite import first_bad_row
 from risorius.io.gltf.accessors import element_count, read_floats, read_indices, read_rows
 from risorius.io.gltf.document import Document, optional_index
 from risorius.io.gltf.nodes import Placed
@@ -81,7 +82,7 @@ def _piece(document: Document, placed: Placed, primitive: Fields, mode: int) -> 
     with np.errstate(over="ignore", invalid="ignore"):
         positions = own @ linear.T + placed.matrix[:3, 3]
         mirrored = np.linalg.det(linear) < 0.0
-    if not np.isfinite(positions).all():
+    if first_bad_row(positions) is not None:
         raise FormatError(f"{primitive.where}: its node carries it to infinity")
     triangles = _triangles(document, primitive, mode, len(positions))
     if mirrored:
@@ -162,7 +163,7 @@ def _targets(
         )
         with np.errstate(over="ignore", invalid="ignore"):
             moved = deltas @ linear.T
-        if not np.isfinite(moved).all():
+        if first_bad_row(moved) is not None:
             raise FormatError(f"{target.where}: its node carries it to infinity")
         result[name] = (rows, moved)
     return result

@@ -14,6 +14,7 @@ from risorius._check import FloatArray
 from risorius.errors import FormatError
 from risorius.head.frame import Frame
 from risorius.io.atomic import write_bytes
+from risorius.io.finite import require_finite
 from risorius.io.gltf.binary import ELEMENT_ARRAY_BUFFER, BinaryBuilder
 from risorius.io.gltf.nodes import METRES_MARK
 from risorius.io.gltf.primitives import SOURCE_ATTRIBUTE
@@ -29,7 +30,6 @@ __all__ = ["glb_bytes", "write_glb"]
 _SECONDS_PER_SHAPE = 1.0
 _MILLIMETRES_PER_METRE = 1000.0
 _LARGEST_EXACT = 2**24  # whole numbers up to this survive float32
-_LARGEST_FLOAT32 = 3e38
 
 
 def write_glb(rig: Rig, path: str | Path, *, animation: bool = False, metres: bool = False) -> None:
@@ -201,5 +201,4 @@ def _require_writable(rig: Rig, where: str) -> None:
     arrays = {"the neutral": rig.mesh.positions, "texture coordinates": rig.mesh.uvs}
     arrays.update((f"target {target.name!r}", target.deltas) for target in rig.targets)
     for name, values in arrays.items():
-        if not (np.abs(values) < _LARGEST_FLOAT32).all():
-            raise FormatError(f"{where}: {name} has a number that is not finite in float32")
+        require_finite(values, f"{where}: {name}")
