@@ -10,15 +10,16 @@ import numpy as np
 
 from .bones import bone_parts
 from .eyes import eye_parts
+from .gums import gums_part
 from .labels import skin_groups, skin_materials
-from .lashes import lashes_part
 from .landmark_places import SKIN_PLACES
 from .landmarks import bone_landmarks, head_landmarks, landmark_text
+from .lashes import lashes_part
 from .obj_writer import material_text, object_text
 from .part import Part, mirror_part
-from .skin import half_skin, mirror_half
-from .teeth import gums_part, teeth_part
+from .skin import build_half_skin, mirror_half
 from .table import EYE_CENTRE
+from .teeth import teeth_part
 from .tongue import tongue_part
 from .unwrap import skin_uvs
 
@@ -51,7 +52,7 @@ def _skin_part(half):
 
 def build_head():
     """Return the texts of head.obj, head.mtl and head.landmarks.json."""
-    half = half_skin(np.array(list(SKIN_PLACES.values()), float))
+    half = build_half_skin(np.array(list(SKIN_PLACES.values()), float))
     skin, image = _skin_part(half)
     parts = [skin, *eye_parts()]
     parts += [teeth_part(which) for which in ("upper", "lower")]

@@ -50,5 +50,6 @@ def closest_on_mesh(positions, faces, points):
         trial[outside] = _edge_weights(corners[outside], points[outside])
         square = ((np.einsum("ij,ijk->ik", trial, corners) - points) ** 2).sum(axis=1)
         closer = square < least
-        least[closer], face[closer], weights[closer] = square[closer], near[closer, k], trial[closer]
+        least[closer], face[closer] = square[closer], near[closer, k]
+        weights[closer] = trial[closer]
     return face, weights, np.sqrt(least)

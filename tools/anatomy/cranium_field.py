@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from .arches import ARCHES, crowns
 from .bone_fields import LEAST_TISSUE, arch_tube
 from .fields import cut, ellipsoid, fold, polygon, rotation, tube, union
 from .mandible_field import mandible_field
 from .skin_field import BASE, skin_field
-from .teeth import ARCHES, crowns
 
 __all__ = ["cranium_field"]
 
@@ -21,7 +21,9 @@ _RIM = [
     (17.5, -18, 76, 3.4), (31, -22.6, 74, 3.8), (43.5, -19.5, 69, 4.4), (51, -8, 62, 4.6),
     (52.4, 4, 61.5, 4.4), (47.5, 14.5, 71, 5),
 ]  # fmt: skip
-_APERTURE = [(0, -25), (3.2, -25.5), (7.5, -30), (11, -36), (12.2, -41), (10, -46.5), (4, -48), (0, -47)]
+_APERTURE = [
+    (0, -25), (3.2, -25.5), (7.5, -30), (11, -36), (12.2, -41), (10, -46.5), (4, -48), (0, -47),
+]  # fmt: skip
 _SEPTUM = [(52, -18), (80, -19), (74, -30), (80, -47), (52, -49)]
 
 
@@ -53,8 +55,8 @@ def _maxilla(points):
     bone = union(bone, buttress, 8)
     zygoma = ellipsoid(points, (46.5, -27, 62.5), (12, 11, 9.5), rotation(0, 35, 0))
     bone = union(bone, zygoma, 9)
-    frontal_process = [(49.5, -24, 62, 5), (51.5, -12, 61, 4.6), (51.8, 0, 61.5, 4.5), (50, 10, 66, 4.5)]
-    return union(bone, tube(points, frontal_process, 12), 6)
+    process = [(49.5, -24, 62, 5), (51.5, -12, 61, 4.6), (51.8, 0, 61.5, 4.5), (50, 10, 66, 4.5)]
+    return union(bone, tube(points, process, 12), 6)
 
 
 def _add_face(points, bone):

@@ -12,7 +12,9 @@ __all__ = ["IRIS_ANGLE", "PUPIL_ANGLE", "eye_parts"]
 PUPIL_ANGLE, IRIS_ANGLE = 9.5, 28.0
 _COLUMNS = 24
 # polar angles of the rings from the pupil to the back [degrees]
-_RINGS = (PUPIL_ANGLE, 15.0, 21.5, IRIS_ANGLE, 34.0, 43.0, 53.0, 64.0, 78.0, 94.0, 112.0, 132.0, 155.0)
+_RINGS = (
+    PUPIL_ANGLE, 15.0, 21.5, IRIS_ANGLE, 34.0, 43.0, 53.0, 64.0, 78.0, 94.0, 112.0, 132.0, 155.0,
+)  # fmt: skip
 _CORNEA = 1.0
 
 
@@ -52,7 +54,6 @@ def eye_parts():
     # seen along the axis, the back shrunk onto the rim so that nothing overlaps
     reach = polar / np.pi
     uvs = 0.5 + 0.5 * reach[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
-    left = Part(
-        "eye_left", positions, polygons, ["eye_left"] * len(polygons), materials, uvs, list(polygons)
-    )
+    groups = ["eye_left"] * len(polygons)
+    left = Part("eye_left", positions, polygons, groups, materials, uvs, list(polygons))
     return left, mirror_part(left, "eye_right")

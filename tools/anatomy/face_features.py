@@ -28,9 +28,10 @@ def add_nose(points, skin):
     skin = union(skin, union(tip, columella, 3.5), 6.5)
     nostril = tube(
         points,
-        [(6.2, -51, 101.5, 1.6), (7.2, -47.6, 99.6, 2.7), (7.8, -43, 98.2, 2.6), (6.5, -36, 97, 1.6)],
+        [(6.2, -51, 101.5, 1.6), (7.2, -47.6, 99.6, 2.7), (7.8, -43, 98.2, 2.6),
+         (6.5, -36, 97, 1.6)],
         12,
-    )
+    )  # fmt: skip
     return cut(skin, -nostril, 1.6)
 
 

@@ -43,7 +43,8 @@ def cut(a, b, radius):
 
 def rotation(about_x=0.0, about_y=0.0, about_z=0.0):
     """Return the matrix (3, 3) that turns about x, then y, then z [degrees]."""
-    (cx, cy, cz), (sx, sy, sz) = (f(np.radians([about_x, about_y, about_z])) for f in (np.cos, np.sin))
+    angles = np.radians([about_x, about_y, about_z])
+    (cx, cy, cz), (sx, sy, sz) = np.cos(angles), np.sin(angles)
     turn_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
     turn_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
     turn_z = np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
@@ -108,9 +109,8 @@ def tube(points, knots, count=24, *, closed=False, scale=(1.0, 1.0, 1.0)):
     curve = smooth_curve(knots, count, closed=closed)
     scale = np.asarray(scale, float)
     out = np.empty(len(points))
-    _tube_kernel(
-        np.ascontiguousarray(points / scale), np.ascontiguousarray(curve[:, :3] / scale), curve[:, 3].copy(), out
-    )
+    centres, radii = np.ascontiguousarray(curve[:, :3] / scale), curve[:, 3].copy()
+    _tube_kernel(np.ascontiguousarray(points / scale), centres, radii, out)
     return out * scale.min()
 
 
@@ -150,7 +150,7 @@ def polygon(plane_points, corners, *, smooth=0):
 
 
 def within_box(points, values, centre, half_size, change):
-    """Return `values` (n,) with ``change(points, values)`` applied inside a box only (for speed)."""
+    """Return `values` (n,) after ``change(points, values)`` inside a box only, for speed."""
     inside = np.flatnonzero((np.abs(points - np.asarray(centre, float)) < half_size).all(axis=1))
     if len(inside):
         values = values.copy()

@@ -31,7 +31,8 @@ def _edges_hit(positions, f, g):
         i, j = f[k], f[(k + 1) % 3]
         if i == g[0] or i == g[1] or i == g[2] or j == g[0] or j == g[1] or j == g[2]:
             continue
-        if _segment_hits(positions[i], positions[j], positions[g[0]], positions[g[1]], positions[g[2]]):
+        a, b, c = positions[g[0]], positions[g[1]], positions[g[2]]
+        if _segment_hits(positions[i], positions[j], a, b, c):
             return True
     return False
 

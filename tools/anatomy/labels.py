@@ -18,18 +18,18 @@ _MATERIALS = {"mouth_bag": "mouth", "vermilion_upper": "lips", "vermilion_lower"
 
 
 def _mouth_group(half, index):
-    band = half.band[index]
+    band = half.labels.band[index]
     if band >= half.mouth_margin + BAG_FIRST_ROW:
         return "mouth_bag"
     if band < half.mouth_margin - BORDER_ROW:
         return "face"
-    return "vermilion_upper" if half.column[index] < COLUMNS_PER_LIP else "vermilion_lower"
+    return "vermilion_upper" if half.labels.column[index] < COLUMNS_PER_LIP else "vermilion_lower"
 
 
 def _eye_group(half, index, outer_corner):
-    if half.band[index] < half.eye_margin - CREASE_ROW:
+    if half.labels.band[index] < half.eye_margin - CREASE_ROW:
         return "face"
-    return "lid_upper_left" if half.column[index] < outer_corner else "lid_lower_left"
+    return "lid_upper_left" if half.labels.column[index] < outer_corner else "lid_lower_left"
 
 
 def _fill_group(centre):
@@ -45,7 +45,7 @@ def skin_groups(half):
     outer_corner = int(margin[:, 0].argmax())
     groups = []
     for index, polygon in enumerate(half.polygons):
-        kind = half.kind[index]
+        kind = half.labels.kind[index]
         if kind == "mouth":
             groups.append(_mouth_group(half, index))
         elif kind == "eye":
@@ -60,11 +60,11 @@ def skin_groups(half):
 def skin_materials(half, groups):
     """Return the material of every polygon of the left half."""
     materials = [_MATERIALS.get(group, "skin") for group in groups]
-    for index, kind in enumerate(half.kind):
+    for index, kind in enumerate(half.labels.kind):
         if kind == "brow":
             materials[index] = "brow"
-        elif kind == "eye" and half.band[index] >= half.eye_margin:
-            column = half.column[index]
+        elif kind == "eye" and half.labels.band[index] >= half.eye_margin:
+            column = half.labels.column[index]
             if min(column + 1, EYE_COLUMNS - column) <= _CARUNCLE_COLUMNS:
                 materials[index] = "caruncle"
     return materials

@@ -6,11 +6,11 @@ import json
 
 import numpy as np
 
+from .arches import ARCHES, crowns
 from .closest import closest_on_mesh
 from .landmark_places import BONE_PLACES, EAR_PLACES, MIRROR_NAMES, SKIN_PLACES
 from .mouth_loops import BORDER_ROW, COLUMNS_PER_LIP
 from .part import triangles_of
-from .teeth import ARCHES, crowns
 from .tongue import TONGUE_COLUMNS, TONGUE_ROWS
 
 __all__ = ["bone_landmarks", "head_landmarks", "landmark_text"]
@@ -31,7 +31,8 @@ def _mouth(half):
     upper = int(np.abs(place[:corner, 0] - half_way).argmin())
     lower = corner + int(np.abs(place[corner:, 0] - half_way).argmin())
     bow = 1 + int(place[1 : corner // 2 + 1, 1].argmax())
-    inner = int(np.abs(half.positions[slit[:corner], 0] - 0.5 * half.positions[slit[corner], 0]).argmin())
+    inner_x = half.positions[slit[: corner + 1], 0]
+    inner = int(np.abs(inner_x[:-1] - 0.5 * inner_x[-1]).argmin())
     return {
         "2.2": slit[0], "2.3": slit[last], "2.4": slit[corner], "2.6": slit[inner],
         "2.8": slit[last - inner], "8.1": border[0], "8.2": border[last], "8.3": border[corner],
@@ -101,7 +102,7 @@ def head_landmarks(parts, half, image):
     begin = dict(zip([p.name for p in parts], np.cumsum([0] + [len(p.positions) for p in parts])))
     by_name = {p.name: p for p in parts}
     ears = np.unique(
-        np.concatenate([p for p, k in zip(half.polygons, half.kind) if k == "ear"])
+        np.concatenate([p for p, k in zip(half.polygons, half.labels.kind) if k == "ear"])
     )
     left = {**_mouth(half), **_lids(half), **_brow(half)}
     midline = np.flatnonzero(half.positions[:, 0] == 0.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -49,7 +50,7 @@ def loop_polygons(rows, *, closed):
         Whether the last column is joined to the first.
     """
     quads, bands = [], []
-    for band, (a, b) in enumerate(zip(rows[:-1], rows[1:])):
+    for band, (a, b) in enumerate(pairwise(rows)):
         count = len(a) if closed else len(a) - 1
         k = np.arange(count)
         following = (k + 1) % len(a)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from .arches import ARCHES, crowns
 from .bone_fields import LEAST_TISSUE, arch_tube
 from .fields import cut, ellipsoid, fold, polygon, rotation, tube, union
 from .skin_field import skin_field
-from .teeth import ARCHES, crowns
 
 __all__ = ["mandible_field"]
 

@@ -9,7 +9,7 @@ from .mouth_bag import bag_rows
 from .projecting import lift
 from .table import MOUTH_HALF_WIDTH, STOMION_Y
 
-__all__ = ["BAG_FIRST_ROW", "BORDER_ROW", "COLUMNS_PER_LIP", "lip_sign", "mouth_loops", "slit_height"]
+__all__ = ["BAG_FIRST_ROW", "BORDER_ROW", "COLUMNS_PER_LIP", "mouth_loops"]
 
 COLUMNS_PER_LIP = 14
 # rows between the slit and the vermilion border, as a share of the height of the vermilion
@@ -27,14 +27,14 @@ BAG_FIRST_ROW = 2
 _GAP = 0.06
 
 
-def slit_height(x):
+def _slit_height(x):
     """Return the designed height (n,) of the line between the lips at `x` [mm]."""
     t = np.abs(x) / MOUTH_HALF_WIDTH
     bow = -0.9 * np.exp(-((t / 0.16) ** 2)) + 0.8 * np.exp(-(((t - 0.42) / 0.25) ** 2))
     return STOMION_Y + bow - 1.2 * t**3
 
 
-def lip_sign():
+def _lip_sign():
     """Return +1 for columns of the upper lip, 0 at the corner, -1 for the lower lip."""
     return np.repeat([1.0, 0.0, -1.0], [COLUMNS_PER_LIP, 1, COLUMNS_PER_LIP])
 
@@ -51,7 +51,7 @@ def _valley():
     """Return x and y (n + 1,) of the bottom of the crease between the lips."""
     x = MOUTH_HALF_WIDTH * np.arange(COLUMNS_PER_LIP + 1) / COLUMNS_PER_LIP
     shift = np.arange(-2.0, 2.01, 0.1)
-    height = slit_height(x)
+    height = _slit_height(x)
     grid = np.column_stack([np.repeat(x, len(shift)), (height[:, None] + shift).ravel()])
     depth = lift(grid)[:, 2].reshape(len(x), -1)
     y = height + shift[depth.argmin(axis=1)] * (x < 0.8 * MOUTH_HALF_WIDTH)
@@ -84,7 +84,7 @@ def _inner_rows(slit, share, sign):
 def mouth_loops():
     """Return the rows around the left half of the mouth, upper midline to lower midline."""
     x, y = _valley()
-    sign = lip_sign()
+    sign = _lip_sign()
     share = _there_and_back(x / MOUTH_HALF_WIDTH)
     plane = np.column_stack([_there_and_back(x), _there_and_back(y)])
     tangent = np.gradient(plane[: COLUMNS_PER_LIP + 1], axis=0)

@@ -37,7 +37,10 @@ def _crossing_edge(faces, points, p, q):
         if {a, b} & {p, q} or not _crosses(points[p], points[q], points[a], points[b]):
             continue
         of_edge, corners = _opposite(faces, a, b)
-        if len(of_edge) == 2 and _crosses(points[corners[0]], points[corners[1]], points[a], points[b]):
+        if len(of_edge) != 2:
+            continue
+        c, d = corners
+        if _crosses(points[c], points[d], points[a], points[b]):
             return a, b, of_edge, corners
     return None
 

@@ -27,7 +27,8 @@ def _inner_edges(faces, vertex_count):
     order = np.argsort(key, kind="stable")
     pair = np.flatnonzero(key[order][1:] == key[order][:-1])
     i, j = order[pair], order[pair + 1]
-    return key[order], key[i], owner[i], owner[j], corners[i, 0], corners[i, 1], corners[i, 2], corners[j, 2]
+    a, b, c, d = corners[i, 0], corners[i, 1], corners[i, 2], corners[j, 2]
+    return key[order], key[i], owner[i], owner[j], a, b, c, d
 
 
 def flip_edges(faces, positions, locked, passes=6):
@@ -92,7 +93,8 @@ def _may_collapse(positions, faces, vertex, into, *, shared, least_cosine):
     if len(common - {vertex, into}) != shared:
         return False
     moving = faces[of_vertex & ~of_target]
-    return not _turns_over(positions, moving, np.where(moving == vertex, into, moving), least_cosine)
+    moved = np.where(moving == vertex, into, moving)
+    return not _turns_over(positions, moving, moved, least_cosine)
 
 
 def collapse_short(positions, faces, fixed, shortest):
@@ -107,7 +109,8 @@ def collapse_short(positions, faces, fixed, shortest):
         edges = np.unique(np.sort(half_edges(faces), axis=1), axis=0)
         length = np.linalg.norm(positions[edges[:, 0]] - positions[edges[:, 1]], axis=1)
         done = False
-        for k in np.flatnonzero(length < shortest)[np.argsort(length[length < shortest], kind="stable")]:
+        short = np.flatnonzero(length < shortest)
+        for k in short[np.argsort(length[short], kind="stable")]:
             for vertex, into in (edges[k], edges[k][::-1]):
                 if not fixed[vertex] and _may_collapse(
                     positions, faces, vertex, into, shared=2, least_cosine=0.3

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -41,37 +42,39 @@ def _columns_at(at, arc, values):
     return np.stack([np.interp(at, arc, column) for column in values.T], axis=1)
 
 
-def border_samples(positions, disc, border, *, mouth_span, landmarks):
-    """Sample the midline and the neck border of the half head, without the gap of the mouth.
-
-    Parameters
-    ----------
-    positions : (n, 3) ndarray
-    disc : (n, 2) ndarray
-    border : (b,) int ndarray
-        Border loop of the half head.
-    mouth_span : (float, float)
-        Lowest and highest y of the outermost row of the mouth on the midline [mm].
-    landmarks : (k, 3) ndarray
-        Places on the midline that must become vertices [mm].
-    """
-    place = positions[border]
-    front = (place[:, 0] < 1e-6) & (place[:, 2] > 60)
-    gap = front & (place[:, 1] < mouth_span[1] + 2.2) & (place[:, 1] > mouth_span[0] - 2.2)
-    start = int(np.flatnonzero(gap & ~np.roll(gap, 1))[0])
-    order = np.roll(np.arange(len(border)), -start)
-    order = order[~gap[order]]
-    place, disc_place = place[order], disc[border][order]
-    arc = _arc_length(place)
+def _stations(place, arc):
+    """Return arc lengths at the wanted spacing; the corners of midline and neck are among them."""
     wanted = edge_length(place)
     density = np.concatenate([[0.0], np.cumsum(np.diff(arc) / (0.5 * (wanted[1:] + wanted[:-1])))])
     on_neck = np.flatnonzero(place[:, 1] < NECK_Y + 1e-6)
     corners = [0, on_neck[0], on_neck[-1], len(place) - 1]
     at = [np.zeros(1)]
-    for a, b in zip(corners[:-1], corners[1:]):
+    for a, b in pairwise(corners):
         count = max(2, round(density[b] - density[a]))
         at.append(np.interp(np.linspace(density[a], density[b], count + 1)[1:], density, arc))
-    at = np.concatenate(at)
+    return np.concatenate(at)
+
+
+def border_samples(dense, *, mouth_span, landmarks):
+    """Sample the midline and the neck border of the half head, without the gap of the mouth.
+
+    Parameters
+    ----------
+    dense : Dense
+    mouth_span : (float, float)
+        Lowest and highest y of the outermost row of the mouth on the midline [mm].
+    landmarks : (k, 3) ndarray
+        Places on the midline that must become vertices [mm].
+    """
+    place = dense.positions[dense.border]
+    front = (place[:, 0] < 1e-6) & (place[:, 2] > 60)
+    gap = front & (place[:, 1] < mouth_span[1] + 2.2) & (place[:, 1] > mouth_span[0] - 2.2)
+    start = int(np.flatnonzero(gap & ~np.roll(gap, 1))[0])
+    order = np.roll(np.arange(len(gap)), -start)
+    order = order[~gap[order]]
+    place, disc_place = place[order], dense.disc[dense.border][order]
+    arc = _arc_length(place)
+    at = _stations(place, arc)
     for landmark in landmarks:
         exact = arc[np.linalg.norm(place - landmark, axis=1).argmin()]
         at[np.abs(at - exact).argmin()] = exact

@@ -11,10 +11,13 @@ from .topology import border_loops, compact
 
 __all__ = ["skin_uvs"]
 
-# places of the islands in the unit square
-_HEAD_BOX = ((0.02, 0.02), (0.98, 0.98))
-_EAR_CENTRE, _EAR_SIZE = (0.07, 0.09), 0.13
-_BAG_CENTRE, _BAG_RADIUS = (0.1, 0.9), 0.09
+# places of the islands, measured from the middle of the unit square
+_HALF_HEAD = 0.48
+_EAR_CENTRE, _EAR_SIZE = np.array([0.43, -0.41]), 0.13
+_BAG_CENTRE, _BAG_RADIUS = np.array([-0.4, 0.4]), 0.09
+# where an island meets its mirror image; the ears do not
+_AXIS = {"head": 0.0, "ear": None, "bag": float(_BAG_CENTRE[0])}
+_ISLAND_OF_GROUP = {"mouth_bag": "bag", "ear_left": "ear"}
 
 
 def _plugged(positions, faces):
@@ -39,29 +42,51 @@ def _disc_start(positions, faces, border, first):
     return harmonic_map(positions, faces, border, circle)
 
 
-def _unfold(positions, faces, *, axis_vertices, first):
-    """Return uvs of the used vertices, with those of `axis_vertices` on u = 0."""
-    solid, used = compact(positions, faces)[::2]
-    local = np.searchsorted(used, faces)
+def _unfold(positions, faces, axis_vertices):
+    """Return uvs (k, 2) of the used vertices and their numbers.
+
+    The first of `axis_vertices` is a vertex of the border that ends up on top; all of them
+    stay on u = 0.
+    """
+    solid, local, used = compact(positions, faces)
     plugged, closed, border = _plugged(solid, local)
-    start = _disc_start(plugged, closed, border, int(np.searchsorted(used, first)))
     on_axis = np.searchsorted(used, axis_vertices)
+    start = _disc_start(plugged, closed, border, int(on_axis[0]))
     if flat_area(start, closed).sum() < 0:
         start = start * [-1, 1]
-    uvs = as_rigid_as_possible(plugged, closed, start, on_axis=on_axis)
-    return uvs[: len(used)], used
+    return as_rigid_as_possible(plugged, closed, start, on_axis=on_axis)[: len(used)], used
 
 
-def _bag_uvs(half, vertex_count):
-    """Return uvs (n, 2) of the bag by row and column, half a disc each for left and right."""
-    uvs = np.full((vertex_count, 2), np.nan)
+def _head_island(positions, faces):
+    """Return uvs of the head: the front of the midline is straight, the back is the seam."""
+    used = np.unique(faces)
+    midline = used[positions[used, 0] == 0.0]
+    crown = midline[positions[midline, 1].argmax()]
+    front = midline[positions[midline, 2] > positions[crown, 2]]
+    uvs, used = _unfold(positions, faces, np.concatenate([[crown], front]))
+    top, bottom = uvs[:, 1].max(), uvs[:, 1].min()
+    scale = _HALF_HEAD / max(np.abs(uvs[:, 0]).max(), 0.5 * (top - bottom))
+    return (uvs - [0.0, 0.5 * (top + bottom)]) * scale, used
+
+
+def _ear_island(positions, faces):
+    """Return uvs of the left ear, the top of its patch upwards."""
+    border = border_loops(faces)[0]
+    top = border[positions[border, 1].argmax()]
+    uvs, used = _unfold(positions, faces, np.array([top]))
+    middle = 0.5 * (uvs.max(axis=0) + uvs.min(axis=0))
+    return (uvs - middle) / np.ptp(uvs, axis=0).max() * _EAR_SIZE + _EAR_CENTRE, used
+
+
+def _bag_island(half):
+    """Return uvs of the left half of the bag: columns by angle, rows by radius."""
     rows = half.mouth_rows[half.mouth_margin :]
-    for depth, row in enumerate(rows):
-        angle = np.linspace(0.5 * np.pi, -0.5 * np.pi, len(row))
-        radius = 1.0 - 0.9 * depth / (len(rows) - 1)
-        uvs[row] = radius * np.column_stack([np.cos(angle), np.sin(angle)])
-        uvs[row[[0, -1]], 0] = 0.0
-    return uvs
+    angle = np.linspace(0.5 * np.pi, -0.5 * np.pi, len(rows[0]))
+    around = np.column_stack([np.cos(angle), np.sin(angle)])
+    around[[0, -1], 0] = 0.0
+    radius = np.linspace(1.0, 0.1, len(rows))
+    uvs = (radius[:, None, None] * around).reshape(-1, 2)
+    return uvs * _BAG_RADIUS + _BAG_CENTRE, np.concatenate(rows)
 
 
 def skin_uvs(half, groups):
@@ -73,67 +98,42 @@ def skin_uvs(half, groups):
     polygons : list of tuple of int
         For the left half, then for its mirror image, in the order of `half.polygons`.
     """
-    positions, polygons = half.positions, half.polygons
-    of = {name: [k for k, g in enumerate(groups) if _island(g) == name] for name in _ISLANDS}
-    faces = {name: triangles_of([polygons[k] for k in of[name]]) for name in ("head", "ear")}
-    midline = np.flatnonzero(positions[:, 0] == 0.0)
-    head_vertices = np.unique(faces["head"])
-    midline = midline[np.isin(midline, head_vertices)]
-    crown = midline[positions[midline, 1].argmax()]
-    front = midline[(positions[midline, 2] > positions[crown, 2]) | (midline == crown)]
-    front = np.concatenate([[crown], front[front != crown]])
-    head, head_used = _unfold(positions, faces["head"], axis_vertices=front, first=crown)
-    ear_first = faces["ear"][0, 0]
-    border = border_loops(faces["ear"])[0]
-    ear_first = border[positions[border, 1].argmax()]
-    ear, ear_used = _unfold(
-        positions, faces["ear"], axis_vertices=np.array([ear_first]), first=ear_first
-    )
-    n = len(positions)
-    tables = {name: np.full((n, 2), np.nan) for name in _ISLANDS}
-    low, high = np.array(_HEAD_BOX)
-    size = np.array([2 * np.abs(head[:, 0]).max(), np.ptp(head[:, 1])])
-    scale = ((high - low) / size).min()
-    centre = np.array([0.0, 0.5 * (head[:, 1].max() + head[:, 1].min())])
-    tables["head"][head_used] = (head - centre) * scale
-    middle = 0.5 * (ear.max(axis=0) + ear.min(axis=0))
-    ear = (ear - middle) / np.ptp(ear, axis=0).max() * _EAR_SIZE
-    tables["ear"][ear_used] = ear + [0.5 - _EAR_CENTRE[0], _EAR_CENTRE[1] - 0.5]
-    tables["bag"] = _bag_uvs(half, n) * _BAG_RADIUS + np.subtract(_BAG_CENTRE, 0.5)
-    return _numbered(tables, polygons, groups)
+    islands = [_ISLAND_OF_GROUP.get(group, "head") for group in groups]
+    faces = {
+        name: triangles_of([p for p, island in zip(half.polygons, islands) if island == name])
+        for name in ("head", "ear")
+    }
+    parts = {
+        "head": _head_island(half.positions, faces["head"]),
+        "ear": _ear_island(half.positions, faces["ear"]),
+        "bag": _bag_island(half),
+    }
+    tables = {name: np.full((len(half.positions), 2), np.nan) for name in parts}
+    for name, (uvs, used) in parts.items():
+        tables[name][used] = uvs
+    return _numbered(tables, half.polygons, islands)
 
 
-_ISLANDS = ("head", "ear", "bag")
-
-
-def _island(group):
-    if group == "mouth_bag":
-        return "bag"
-    return "ear" if group == "ear_left" else "head"
-
-
-def _numbered(tables, polygons, groups):
+def _numbered(tables, polygons, islands):
     """Number the texture coordinates of both halves; shared where an island meets its image."""
-    uvs, number, left, right = [], {}, [], []
-    axis = {"head": 0.0, "ear": None, "bag": _BAG_CENTRE[0] - 0.5}
+    uvs, number = [], {}
 
-    def index(island, vertex, mirrored):
-        place = tables[island][vertex]
-        if axis[island] is not None and abs(place[0] - axis[island]) < 1e-9:
-            mirrored = False
+    def index(island, vertex, *, mirrored):
+        u, v = tables[island][vertex]
+        axis = _AXIS[island]
+        mirrored = mirrored and (axis is None or abs(u - axis) > 1e-9)
         key = (island, vertex, mirrored)
         if key not in number:
             number[key] = len(uvs)
-            about = 2 * (axis[island] or 0.0)
-            u = about - place[0] if mirrored else place[0]
-            uvs.append((u + 0.5, place[1] + 0.5))
+            uvs.append((0.5 + (2 * (axis or 0.0) - u if mirrored else u), 0.5 + v))
         return number[key]
 
-    for polygon, group in zip(polygons, groups):
-        island = _island(group)
-        left.append(tuple(index(island, v, False) for v in polygon))
-    for polygon, group in zip(polygons, groups):
-        island = _island(group)
-        flipped = (polygon[0], *polygon[:0:-1])
-        right.append(tuple(index(island, v, True) for v in flipped))
+    left = [
+        tuple(index(island, v, mirrored=False) for v in polygon)
+        for polygon, island in zip(polygons, islands)
+    ]
+    right = [
+        tuple(index(island, v, mirrored=True) for v in (polygon[0], *polygon[:0:-1]))
+        for polygon, island in zip(polygons, islands)
+    ]
     return np.array(uvs), left + right
