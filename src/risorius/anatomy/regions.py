@@ -88,7 +88,7 @@ def find_regions(head: Head, lips: LipSides, margins: dict[str, LidMargins]) -> 
     weights /= np.maximum(weights.sum(axis=1, keepdims=True), 1e-12)
     mobility = _ahead(head, points, height)
     for margin in margins.values():
-        band = 0.75 * margin.height
+        band = 1.2 * margin.height
         mobility = mobility * smooth_step((margin.distance - 0.1 * margin.height) / band)
         mobility[margin.slit.inside] = 0.0
     deep = lips.inside & (lips.distance > 0.35 * width)

@@ -54,7 +54,7 @@ _DEVICES: tuple[tuple[str, float, float, str, ControlGroup, bool, float], ...] =
     ("jaw_yaw", -5.0, 5.0, "deg", "jaw", False, -1.0),
     ("jaw_protrusion", -2.0, 8.0, "mm", "jaw", False, 1.0),
     ("lips_together", 0.0, 1.0, "1", "lips", False, 1.0),
-    ("cheek_puff", -1.0, 1.0, "1", "cheek", True, 1.0),
+    ("cheek_puff", 0.0, 1.0, "1", "cheek", True, 1.0),
     ("lid_upper", -1.0, 1.0, "1", "lid", True, 1.0),
     ("lid_lower", -1.0, 1.0, "1", "lid", True, 1.0),
     ("gaze_yaw", -40.0, 40.0, "deg", "gaze", True, -1.0),

@@ -29,7 +29,7 @@ __all__ = ["BoundLinear", "LinearMuscle"]
 # Published k is not given; ours: this share of the shorter of the two radii.
 _PULL = 0.4
 # Skin that slides instead of sinking keeps its length up to this factor.
-_MOST_STRETCH = 1.6
+MOST_STRETCH = 1.6
 # Wrinkles begin at this share of the start radius: at the bone there is no skin to fold.
 _FIRST_WRINKLE = 0.2
 
@@ -222,7 +222,7 @@ class BoundLinear:
         along = pull - (self.support * inward)[:, None] * self.outward
         before = np.linalg.norm(pull, axis=1)
         after = np.linalg.norm(along, axis=1)
-        stretch = np.minimum(before / np.maximum(after, 1e-300), _MOST_STRETCH)
+        stretch = np.minimum(before / np.maximum(after, 1e-300), MOST_STRETCH)
         return along * np.where(after > 0.0, stretch, 1.0)[:, None]
 
 

@@ -26,6 +26,10 @@ from risorius.vectormuscle.wrinkle import Wrinkles, WrinkleZone, read_wrinkles
 __all__ = ["SheetMuscle"]
 
 
+# Share of the half width over which a sheet pulls with full strength.
+_PLATEAU = 0.35
+
+
 @dataclass(frozen=True, eq=False)
 class SheetMuscle:
     """Fibres side by side, all parallel to the line from origin to insertion.
