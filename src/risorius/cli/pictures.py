@@ -7,7 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from risorius._check import one_of
-from risorius.cli.sources import Given, bake_head, is_rig, load_rig, read_head, resolve
+from risorius.cli.sources import (
+    Given,
+    bake_head,
+    is_rig,
+    load_rig,
+    read_head,
+    require_shapes,
+    resolve,
+)
 from risorius.cli.talk import Talk, Tick
 from risorius.errors import ParameterError
 from risorius.render.heads import Portrait
@@ -69,6 +77,7 @@ def subject_of(name: str, given: Given, talk: Talk, *, needs: Sequence[str] | No
         with talk.stage("read"):
             rig = load_rig(name, given.landmarks, flip_landmarks=given.flip_landmarks)
         if rig.targets or needs == ():
+            require_shapes(needs or (), rig.by_name, rig.left_out)
             return rig
     project = resolve(name, given)
     if needs == ():

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from risorius import _formats
 from risorius.anatomy.mechanics import Mechanics
 from risorius.cli.talk import Talk
 from risorius.controls.shape_sets import ShapeList, list_shapes
+from risorius.errors import ParameterError
 from risorius.head.head import Head, HeadOptions
 from risorius.project import (
     BUILTIN,
@@ -32,6 +34,7 @@ __all__ = [
     "is_rig",
     "load_rig",
     "read_head",
+    "require_shapes",
     "resolve",
     "with_given",
     "with_head",
@@ -175,6 +178,26 @@ def bake_head(project: Project, talk: Talk, *, only: Sequence[str] | None = None
     return Baked(rig, dict(shapes.left_out))
 
 
+def require_shapes(
+    names: Iterable[str], known: Collection[str], left_out: Mapping[str, str]
+) -> None:
+    """Refuse names of shapes that are not `known`, with the reason or the nearest names.
+
+    Raises
+    ------
+    ParameterError
+        For the first unknown name.
+    """
+    for name in names:
+        if name in known:
+            continue
+        if name in left_out:
+            raise ParameterError(f"shapes: {name!r} was left out: {left_out[name]}")
+        near = get_close_matches(name, known, n=3)
+        way = f"did you mean {' or '.join(near)}?" if near else "`risorius inspect` lists them"
+        raise ParameterError(f"shapes: there is no {name!r} among {len(known)}; {way}")
+
+
 def _chosen(shapes: ShapeList, names: Sequence[str]) -> ShapeList:
-    """Return the named shapes; unknown names are left to the rig to refuse."""
-    return ShapeList({name: shapes.poses[name] for name in names if name in shapes.poses}, {})
+    require_shapes(names, shapes.poses, shapes.left_out)
+    return ShapeList({name: shapes.poses[name] for name in names}, {})

@@ -139,7 +139,7 @@ def talking(*, json: bool, quiet: bool, debug: bool) -> Generator[Talk]:
             talk.finish(ok=leaving.exit_code == 0)
             raise
         except KeyboardInterrupt:
-            _fail(talk, "interrupted; files that were not complete yet are not there", INTERRUPTED)
+            _fail(talk, "interrupted; no incomplete file is left", INTERRUPTED)
         except (RisoriusError, ImportError) as error:
             _fail(talk, str(error), REFUSED)
         except MemoryError:

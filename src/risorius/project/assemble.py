@@ -157,7 +157,10 @@ def _parameters(project: Project) -> VectorParameters:
         else:
             low, high = _RANGES.get(name, (None, None))
             number = as_number(where, value, low=low, high=high)
-            changed[name] = type(getattr(base, name))(number)
+            whole = isinstance(getattr(base, name), int)
+            if whole and not number.is_integer():
+                raise ParameterError(f"{where}: {number:g} is not a whole number")
+            changed[name] = int(number) if whole else number
     return replace(base, **changed)
 
 

@@ -142,15 +142,16 @@ class Portrait:
         return render(self.surfaces(posed), camera, size=size, supersample=supersample)
 
     def _normals(self, placed: FloatArray) -> FloatArray:
-        sums = np.zeros_like(placed)
-        area_normals(placed, self._rig.mesh.triangles, sums)
+        single = np.zeros_like(placed)
+        area_normals(placed, self._rig.mesh.triangles, single)
         joined = self._joined
         if joined.is_identity:
-            return sums
+            return single
         count = len(joined.first)
         whole = np.zeros((count, 3))
         for axis in range(3):
-            whole[:, axis] = np.bincount(joined.representative, sums[:, axis], count)
+            whole[:, axis] = np.bincount(joined.representative, single[:, axis], count)
+        whole /= np.maximum(np.linalg.norm(whole, axis=1, keepdims=True), 1e-12)
         return whole[joined.representative]
 
 

@@ -131,7 +131,7 @@ def _mouth(landmarks: LandmarkSet) -> FloatArray:
     middle = 0.5 * (left + right)
     middle[2] = landmarks.position("2.2")[2]
     middle[1] -= 0.17 * width
-    return _diamond(middle, np.array([0.95, 0.85, 0.0]) * width)
+    return _diamond(middle, np.array([1.05, 0.9, 0.0]) * width)
 
 
 def _eyes(landmarks: LandmarkSet) -> FloatArray:
