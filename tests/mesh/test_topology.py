@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
 
 from risorius.mesh.core import TriMesh
-from risorius.mesh.topology import collapsed_faces, report
+from risorius.mesh.topology import collapsed_faces, orient, report
 from tests.mesh.shapes import (
     cube,
     grid,
@@ -120,3 +122,20 @@ def test_any_soup_gets_a_report(mesh: TriMesh):
     assert found.euler == used - found.edge_count + whole
     assert set(np.flatnonzero(collapsed_faces(mesh.faces))) <= set(found.degenerate_faces)
     assert len(found.sentences()) >= 2
+
+
+@pytest.mark.real
+def test_a_real_head_is_understood(real_data: Path):
+    arrays = np.load(real_data / "ict_facekit" / "ict_facekit.npz")
+    polygons = arrays["polygons"]
+    quads = polygons[polygons[:, 3] >= 0]
+    mesh = TriMesh(
+        arrays["vertices"].astype(float), np.concatenate([polygons[:, :3], quads[:, [0, 2, 3]]])
+    )
+    found = report(mesh)
+    assert found.is_manifold
+    assert found.component_count == 56
+    assert len(found.boundary_loops) == 23
+    assert found.genus == 0
+    # Only the lashes are sheets; everything else that is open still has an outside.
+    assert not orient(mesh.positions, mesh.faces).flipped.any()
