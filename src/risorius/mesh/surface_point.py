@@ -75,7 +75,7 @@ class SurfacePoints:
         return len(self.faces)
 
     def take(self, rows: npt.ArrayLike) -> SurfacePoints:
-        """Return the points of the given `rows` (indices or mask)."""
+        """Return the points of some `rows`: indices (q,) or a mask (k,)."""
         chosen = np.asarray(rows)
         return SurfacePoints(self.faces[chosen], self.bary[chosen], self.surfaces[chosen])
 
