@@ -103,7 +103,7 @@ PLACE = JSON | st.fixed_dictionaries(
     )
 )
 def test_any_json_is_read_or_refused(tmp_path_factory: pytest.TempPathFactory, document: object):
-    path = tmp_path_factory.mktemp("json") / "x.json"
+    path = tmp_path_factory.getbasetemp() / "any.json"
     path.write_text(json.dumps(document))
     try:
         specs = read_landmarks(path)
