@@ -22,21 +22,22 @@ def _neck(points):
         scale=(1, 1, 1.02),
     )
     sternomastoid = tube(
-        points, [(52, -45, -14, 8), (41, -95, 2, 8), (26, -140, 17, 7.5), (13, -195, 32, 7)], 20
+        points, [(50, -42, -16, 7), (39, -92, -1, 7), (25, -140, 16, 6.5), (13, -195, 31, 6)], 20
     )
     trapezius = tube(
         points,
-        [(16, -30, -68, 12), (22, -80, -58, 17), (28, -140, -52, 19), (40, -200, -52, 22)],
+        [(13, -30, -68, 13), (17, -80, -58, 18), (22, -140, -52, 21), (34, -200, -52, 24)],
         16,
     )
-    neck = union(union(trunk, sternomastoid, 22), trapezius, 26)
+    nape = tube(points, [(0, -40, -70, 10), (0, -90, -58, 16), (0, -200, -56, 20)], 10)
+    neck = union(union(trunk, sternomastoid, 18), union(trapezius, nape, 16), 26)
     return union(neck, ellipsoid(points, (0, -138, 26), (8, 20, 8)), 16)
 
 
 def skin_field(points):
     """Return the field (n,) of the skin at `points` (n, 3) [mm]."""
     points = fold(points)
-    skin = union(BASE(points), _neck(points), 22)
+    skin = union(BASE(points), _neck(points), 16)
     skin = within_box(points, skin, (20, -35, 95), (30, 60, 40), add_nose)
     skin = within_box(points, skin, (15, -65, 90), (35, 35, 40), add_lips)
     skin = within_box(points, skin, (32, 0, 75), (32, 32, 40), add_lids)

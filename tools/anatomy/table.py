@@ -85,7 +85,7 @@ EYE_CENTRE = np.array([31.5, 0.0, 68.3])
 EYE_RADIUS = 12.3
 # palpebral fissure in the front view: corners (x, y), heights of the two margins
 LID_INNER, LID_OUTER = (16.8, -2.4), (46.6, 1.1)
-LID_UPPER, LID_LOWER = 5.5, -5.5
+LID_UPPER, LID_LOWER = 4.8, -5.4
 
 MOUTH_HALF_WIDTH = 25.5
 STOMION_Y = -68.0
