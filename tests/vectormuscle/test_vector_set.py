@@ -109,7 +109,7 @@ def test_a_head_with_too_few_landmarks_is_refused() -> None:
     keep = ("3.7", "3.8", "3.11", "3.12", "2.1", "9.3")
     specs = {name: spec for name, spec in head_specs().items() if name in keep}
     head = Head.from_mesh(assemble({"skin": head_pieces()["skin"]}), specs)
-    with pytest.raises(LandmarkError, match="6 in common .*, 8 are needed; add some of 2"):
+    with pytest.raises(LandmarkError, match=r"6 in common .*, 8 are needed; add some of 2"):
         SET.fitted(head)
 
 

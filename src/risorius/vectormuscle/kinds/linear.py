@@ -28,6 +28,8 @@ __all__ = ["BoundLinear", "LinearMuscle"]
 
 # Published k is not given; ours: this share of the shorter of the two radii.
 _PULL = 0.4
+# More than this reaches the fold limit of the profile.
+_MOST_STRENGTH = 0.98 * fold_limit(start_radius=1.0, finish_radius=2.0) / _PULL
 # Skin that slides instead of sinking keeps its length up to this factor.
 MOST_STRETCH = 1.6
 # Wrinkles begin at this share of the start radius: at the bone there is no skin to fold.
@@ -76,6 +78,12 @@ class LinearMuscle:
     def __post_init__(self) -> None:
         if float(np.linalg.norm(self.insertion - self.origin)) == 0.0:
             raise ParameterError(f"muscle {self.name}: origin and insertion are one point")
+        if self.strength > _MOST_STRENGTH:
+            _warn(
+                f"muscle {self.name}: strength {self.strength:g} would fold the skin; taken as "
+                f"{_MOST_STRENGTH:.3g}"
+            )
+            object.__setattr__(self, "strength", _MOST_STRENGTH)
         if not 0.0 < self.half_angle < 90.0:
             clamped = float(np.clip(self.half_angle, 1.0, 89.0))
             _warn(f"muscle {self.name}: half_angle {self.half_angle:g} clamped to {clamped:g}")
@@ -93,9 +101,9 @@ class LinearMuscle:
     @property
     def pull(self) -> float:
         """Displacement at contraction 1 where the effect is full [mm], below the fold limit."""
-        radii = min(self.start_radius, self.finish_radius - self.start_radius)
-        limit = fold_limit(start_radius=self.start_radius, finish_radius=self.finish_radius)
-        return min(self.strength * _PULL * radii, 0.98 * limit)
+        return (
+            self.strength * _PULL * min(self.start_radius, self.finish_radius - self.start_radius)
+        )
 
     def mirrored(self) -> LinearMuscle:
         """Return the muscle of the other side."""
