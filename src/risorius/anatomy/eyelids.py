@@ -36,6 +36,8 @@ class LidParameters:
         Where the axis lies behind the corners if there is no eyeball, in eye widths.
     clearance : float
         Least distance of a moving lid from the eyeball [mm].
+    corner_rest : float
+        Share of the eye's width over which the lids come to rest at the corners.
     """
 
     upper_band: float = 1.05
@@ -46,6 +48,7 @@ class LidParameters:
     lower_drop: float = 0.12
     axis_depth: float = 0.38
     clearance: float = 0.25
+    corner_rest: float = 0.06
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,21 +118,37 @@ class Eyelids:
         return result
 
 
-def _contour(x: FloatArray, y: FloatArray, samples: FloatArray) -> FloatArray:
+def _contour(x: FloatArray, y: FloatArray, samples: FloatArray, *, outwards: float) -> FloatArray:
     """Return a margin's pitch at the places `samples`, as a smooth curve through both corners.
 
-    A polynomial of degree five: a traced margin may hop between the front and the back edge of
-    the lid, the lid must not.
+    Half an ellipse times a cubic: a traced margin may hop between the front and the back edge of
+    the lid, the lid must not. It hugs the side `outwards` (1 above, -1 below) of the line, so
+    that a closed lid leaves no gap.
+
+    Parameters
+    ----------
+    x, y : (k,) float64
+        Place along the eye and pitch [rad] of the margin's vertices.
+    samples : (q,) float64
+        Places asked for.
+    outwards : float
     """
 
     def basis(t: FloatArray) -> FloatArray:
-        bump, wave = t * (1.0 - t), 2.0 * t - 1.0
+        bump, wave = np.sqrt(np.clip(t * (1.0 - t), 0.0, None)), 2.0 * t - 1.0
         return np.stack([bump, bump * wave, bump * wave**2, bump * wave**3], axis=1)
 
     start, slope = float(y[0]), float(y[-1] - y[0])
-    system = basis(x)
-    normal = system.T @ system + 1e-6 * len(x) * np.eye(4)
-    coefficients = np.linalg.solve(normal, system.T @ (y - start - slope * x))
+    inside = np.clip(x, 0.0, 1.0)
+    system, right = basis(inside), y - start - slope * inside
+    weights = np.ones(len(x))
+    coefficients = np.zeros(4)
+    for _ in range(12):
+        weighted = system * weights[:, None]
+        normal = system.T @ weighted + 1e-6 * weights.sum() * np.eye(4)
+        coefficients = np.linalg.solve(normal, weighted.T @ right)
+        residual = outwards * (right - system @ coefficients)
+        weights = np.where(residual > 0.0, 8.0, 1.0)
     t = np.clip(samples, 0.0, 1.0)
     return start + slope * t + basis(t) @ coefficients
 
@@ -173,8 +192,8 @@ def build_eyelids(
     pitch = np.arctan2(arm @ up, arm[:, 2])
     place = (mesh.positions - inner) @ across / margins.width
     upper_pitch, lower_pitch = (
-        _contour(place[line], pitch[line], place)
-        for line in (margins.slit.upper, margins.slit.lower)
+        _contour(place[line], pitch[line], place, outwards=side)
+        for line, side in ((margins.slit.upper, 1.0), (margins.slit.lower, -1.0))
     )
     opening = np.maximum(upper_pitch - lower_pitch, 0.0)
     on_upper = margins.upper
@@ -188,7 +207,9 @@ def build_eyelids(
     weight = weight * smooth_step(beside) * (arm[:, 2] > 0.0)
     vertices = np.flatnonzero(weight > 1e-6).astype(np.int32)
     meet = p.lower_share * opening
-    closing = np.where(on_upper, opening - meet, -meet)
+    # Towards the corners the lids come to rest, or their skin would fold over the canthus.
+    ends = smooth_step(np.minimum(place, 1.0 - place) / p.corner_rest)
+    closing = np.where(on_upper, opening - meet, -meet) * ends
     surface, floor = None, np.full(len(vertices), -np.inf)
     if eye is not None and eye_centre is not None and centre is eye_centre:
         surface = RadialSurface.of_mesh(eye, centre)

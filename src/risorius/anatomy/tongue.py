@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from risorius._check import FloatArray
+from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.head.head import Head
+from risorius.mesh.laplacian import smooth
+from risorius.mesh.topology import components
 
 __all__ = ["Tongue", "build_tongue", "tongue_in_gums"]
 
@@ -64,7 +66,7 @@ def build_tongue(positions: FloatArray, lip_front: float) -> Tongue:
     back, tip = float(positions[:, 2].min()), float(positions[:, 2].max())
     length = max(tip - back, 1e-6)
     along = np.clip(((positions[:, 2] - back) / length - _ROOT) / (1.0 - _ROOT), 0.0, 1.0)
-    return Tongue(along, max(lip_front - tip, 0.0) + 0.35 * length, length)
+    return Tongue(along, max(lip_front - tip, 0.0) + 0.4 * length, length)
 
 
 def tongue_in_gums(head: Head, mouth_width: float, lip_front: float) -> Tongue | None:
@@ -81,20 +83,36 @@ def tongue_in_gums(head: Head, mouth_width: float, lip_front: float) -> Tongue |
     both = np.concatenate([teeth, upper.mesh.positions]) if upper else teeth
     away = np.asarray(cKDTree(both).query(points)[0])
     top = float(teeth[:, 1].max())
-    bottom = float(teeth[:, 1].min())
     front = float(teeth[:, 2].max())
     half = 0.5 * float(np.ptp(teeth[:, 0])) - 0.1 * mouth_width
     inside = (
-        (away > 0.08 * mouth_width)
+        (away > 0.04 * mouth_width)
         & (np.abs(points[:, 0] - teeth[:, 0].mean()) < half)
         & (points[:, 2] < front - 0.1 * mouth_width)
         & (points[:, 1] < top + 0.15 * mouth_width)
-        & (points[:, 1] > bottom)
+        & (points[:, 1] > top - 0.25 * mouth_width)
     )
+    faces = head.parts["gums"].mesh.faces
+    inside = _foremost_piece(faces, inside, points)
     if inside.sum() < 20:
         return None
     tongue = build_tongue(points[inside], lip_front)
     along = np.zeros(len(points))
-    soft = smooth_step(away[inside] / (0.08 * mouth_width) - 1.0)
-    along[inside] = tongue.along * soft
-    return Tongue(along, tongue.reach, tongue.length)
+    along[inside] = tongue.along * smooth_step(away[inside] / (0.05 * mouth_width) - 0.8)
+    # The floor of the mouth gives way a little, so that the root does not tear off it.
+    along = smooth(along, faces, 4)
+    return Tongue(along / max(float(along.max()), 1e-9), tongue.reach, tongue.length)
+
+
+def _foremost_piece(faces: IntArray, chosen: BoolArray, points: FloatArray) -> BoolArray:
+    """Return the connected piece (n,) of the `chosen` vertices that lies furthest forward.
+
+    Crumbs do not count: a piece needs a tenth of the chosen vertices.
+    """
+    labels = components(faces[chosen[faces].all(axis=1)], len(chosen)).of_vertex
+    sizes = np.bincount(labels[labels >= 0], minlength=1)
+    large = np.flatnonzero(sizes >= max(0.1 * chosen.sum(), 1))
+    if not len(large):
+        return np.zeros(len(chosen), bool)
+    front = [float(np.quantile(points[labels == number, 2], 0.9)) for number in large]
+    return labels == large[int(np.argmax(front))]
