@@ -12,12 +12,14 @@ from typer.testing import CliRunner
 
 from risorius.cli.main import app
 
+# Plain text of one width wherever the tests run.
+_TERMINAL = {"COLUMNS": "100", "NO_COLOR": "1", "_TYPER_FORCE_DISABLE_TERMINAL": "1"}
 REPOSITORY = Path(__file__).resolve().parents[2]
 
 
 def run(*arguments: object) -> Result:
     """Run `risorius` with these arguments."""
-    result = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    result = CliRunner(env=_TERMINAL).invoke(app, [str(argument) for argument in arguments])
     unexpected = result.exception
     if unexpected is not None and not isinstance(unexpected, SystemExit):
         raise unexpected

@@ -71,7 +71,7 @@ def test_a_signal_in_the_middle_of_the_work_leaves_only_whole_files(tmp_path: Pa
         _, errors = process.communicate(timeout=120)
     assert process.returncode == 130, errors
     assert "Traceback" not in errors
-    assert "demo.glb" in os.listdir(out)
+    assert (out / "demo.glb").is_file()
     assert not (out / "views.png").exists()
     for picture in out.glob("*.png"):
         read_png(picture)

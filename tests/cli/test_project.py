@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 
 from risorius import Rig
@@ -99,7 +98,7 @@ def test_a_moved_folder_still_works(tmp_path: Path, monkeypatch) -> None:
     for name in ("head.obj", "head.landmarks.json"):
         (old / name).write_bytes(asset(name).read_bytes())
     run("project", "new", old / "head.obj", "-l", old / "head.landmarks.json", "-o", old / "p.json")
-    os.rename(old, tmp_path / "new")
+    old.rename(tmp_path / "new")
     monkeypatch.chdir(tmp_path)
     result = run("rig", "new/p.json", "-o", "f.npz", "--shapes", "emotions")
     assert result.exit_code == 0, result.stderr

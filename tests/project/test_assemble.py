@@ -7,11 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from risorius import builtin_head
+from risorius import VectorFace, builtin_head
+from risorius.cli.options import Method, Profile
 from risorius.controls.presets import default_presets
 from risorius.errors import FormatError, LandmarkError, ParameterError
 from risorius.landmarks import LandmarkSpec
 from risorius.project import (
+    METHODS,
+    PROFILES,
     Project,
     face_of,
     landmarks_of,
@@ -21,6 +24,7 @@ from risorius.project import (
     read_vector_set,
     vectors_of,
 )
+from risorius.project.assemble import BUILDERS
 from risorius.vectormuscle import default_vector_set
 
 MARK = {"2.1": LandmarkSpec(vertex=7)}
@@ -81,6 +85,7 @@ def test_a_recipe_of_another_kind_is_refused(tmp_path: Path, reader) -> None:
 def test_parameters_go_on_top_of_the_profile() -> None:
     project = Project(profile="faithful", parameters={"steps": 3.0})
     face = face_of(project, builtin_head())
+    assert isinstance(face, VectorFace)
     assert face.parameters.steps == 3
     assert face.parameters.angular == "published"
 
@@ -100,3 +105,8 @@ def test_a_parameter_that_does_not_exist_or_fit_is_refused(parameters, sentence:
     with pytest.raises(ParameterError) as caught:
         face_of(Project(parameters=parameters), builtin_head())
     assert sentence in str(caught.value)
+
+
+def test_every_method_has_a_builder_and_a_word_on_the_command_line() -> None:
+    assert tuple(BUILDERS) == METHODS == tuple(method.value for method in Method)
+    assert tuple(profile.value for profile in Profile) == PROFILES

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from risorius.controls.shape_sets import SHAPE_SETS
@@ -39,6 +39,7 @@ def _projects(draw: st.DrawFn, folder: Path) -> Project:
     )
 
 
+@settings(max_examples=40)
 @given(data=st.data())
 def test_what_is_written_is_read(tmp_path_factory: pytest.TempPathFactory, data) -> None:
     folder = tmp_path_factory.getbasetemp().resolve()

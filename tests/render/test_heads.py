@@ -82,7 +82,7 @@ def test_without_landmarks_the_whole_is_framed_and_close_ups_are_refused() -> No
     portrait = Portrait.of(Rig(quad_mesh(), ()))
     seen = portrait.camera("front").project(portrait.positions, (100, 100))
     assert ((seen[:, :2] > 0) & (seen[:, :2] < 100)).all()
-    with pytest.raises(LandmarkError, match="the view of the mouth needs 2.4"):
+    with pytest.raises(LandmarkError, match=r"the view of the mouth needs 2\.4"):
         portrait.camera("mouth")
     with pytest.raises(ParameterError, match="'behind' is not one of"):
         portrait.camera("behind")

@@ -162,12 +162,13 @@ def bake_head(project: Project, talk: Talk, *, only: Sequence[str] | None = None
     RisoriusError
         If something of it is refused.
     """
-    vectors, presets = vectors_of(project), presets_of(project)
+    presets = presets_of(project)
+    vectors_of(project)  # refused now, not after the long work
     head = read_head(project, talk)
     with talk.stage("parts+lips+lids"):
         mechanics = Mechanics.build(head)
     with talk.stage("muscles"):
-        face = face_of(project, head, mechanics=mechanics, vectors=vectors)
+        face = face_of(project, head, mechanics=mechanics)
     for note in mechanics.notes:
         talk.note(note)
     shapes = list_shapes(face.controls, presets, sets=project.shapes)

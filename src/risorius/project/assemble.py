@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from importlib.resources import as_file, files
 from pathlib import Path
@@ -18,10 +18,12 @@ from risorius.io.bounded import read_json
 from risorius.landmarks.landmark_set import LandmarkSpec
 from risorius.mesh.polygon_mesh import PolygonMesh
 from risorius.project.project import Project
+from risorius.rig.face import Face
 from risorius.vectormuscle.face import Profile, VectorFace, VectorParameters
 from risorius.vectormuscle.vector_set import VectorSet, default_vector_set, parse_vector_set
 
 __all__ = [
+    "BUILDERS",
     "face_of",
     "landmarks_of",
     "presets_of",
@@ -111,13 +113,7 @@ def vectors_of(project: Project) -> VectorSet:
     return read_vector_set(project.vector_set)
 
 
-def face_of(
-    project: Project,
-    head: Head,
-    *,
-    mechanics: Mechanics | None = None,
-    vectors: VectorSet | None = None,
-) -> VectorFace:
+def face_of(project: Project, head: Head, *, mechanics: Mechanics | None = None) -> Face:
     """Bind the project's method to its head.
 
     Parameters
@@ -126,19 +122,22 @@ def face_of(
     head : Head
     mechanics : Mechanics, optional
         Already built for this head.
-    vectors : VectorSet, optional
-        Already read.
 
     Raises
     ------
+    FormatError
+        If a recipe is missing or malformed.
     ParameterError
         If the project sets a parameter that the method does not have, or out of range.
     LandmarkError, MeshError
         If the head is not fit.
     """
+    return BUILDERS[project.method](project, head, mechanics)
+
+
+def _vector_face(project: Project, head: Head, mechanics: Mechanics | None) -> Face:
     parameters = _parameters(project)
-    chosen = vectors_of(project) if vectors is None else vectors
-    return VectorFace.build(head, chosen, mechanics=mechanics, parameters=parameters)
+    return VectorFace.build(head, vectors_of(project), mechanics=mechanics, parameters=parameters)
 
 
 def _parameters(project: Project) -> VectorParameters:
@@ -166,3 +165,8 @@ def _parameters(project: Project) -> VectorParameters:
 
 def _assets() -> Any:
     return files("risorius.anatomy").joinpath("assets")
+
+
+Builder = Callable[[Project, Head, Mechanics | None], Face]
+BUILDERS: dict[str, Builder] = {"vector": _vector_face}
+"""How each method of `METHODS` is bound to a head."""
