@@ -234,3 +234,13 @@ def test_sizes_stay_in_budget():
     assert 5000 <= SKIN.vertex_count <= 8000
     assert len(_vertices(["ear_left", "ear_right"])) <= 900
     assert len(ASSETS.joinpath("head.obj").read_bytes()) < 1_500_000
+
+
+@pytest.mark.parametrize(("side", "name"), [("left", "3.5"), ("right", "3.6")])
+def test_eye_texture_is_centred_on_the_pupil(side, name):
+    pupil = HEAD_MARKS["landmarks"][name]["vertex"]
+    np.testing.assert_array_equal(HEAD.uvs[HEAD.uv_corners[HEAD.corners == pupil]], 0.5)
+    iris = np.isin(HEAD.triangle_polygon, HEAD.materials.polygons("iris"))
+    iris &= np.isin(HEAD.triangle_polygon, HEAD.objects.polygons(f"eye_{side}"))
+    offset = HEAD.uvs[HEAD.uv_corners[HEAD.triangle_corners[iris].ravel()]] - 0.5
+    assert np.linalg.norm(offset, axis=1).max() == pytest.approx(0.5 * 28 / 180, abs=1e-4)

@@ -17,6 +17,7 @@ from .landmarks import bone_landmarks, head_landmarks, landmark_text
 from .lashes import lashes_part
 from .obj_writer import material_text, object_text
 from .part import Part, mirror_part
+from .projection import with_arch_uvs, with_top_uvs
 from .skin import build_half_skin, mirror_half
 from .table import EYE_CENTRE
 from .teeth import teeth_part
@@ -55,9 +56,9 @@ def build_head():
     half = build_half_skin(np.array(list(SKIN_PLACES.values()), float))
     skin, image = _skin_part(half)
     parts = [skin, *eye_parts()]
-    parts += [teeth_part(which) for which in ("upper", "lower")]
-    parts += [gums_part(which) for which in ("upper", "lower")]
-    parts.append(tongue_part())
+    parts += [with_arch_uvs(teeth_part(which)) for which in ("upper", "lower")]
+    parts += [with_arch_uvs(gums_part(which)) for which in ("upper", "lower")]
+    parts.append(with_top_uvs(tongue_part()))
     lashes = lashes_part(half, EYE_CENTRE)
     parts += [lashes, mirror_part(lashes, "lashes_right")]
     materials = sorted({name for part in parts for name in part.materials})
