@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 
 from risorius import VectorFace, bake, builtin_head
+from risorius.errors import ParameterError
 from risorius.landmarks import LandmarkSpec
 from risorius.rig import MorphTarget, Rig
 from risorius.rig.quality import QualityReport, inspect_rig, shortcomings, still_zone
+from risorius.rig.quality.still import Drift, drifts
+from risorius.rig.quality.subject import subject_of
 from tests.rig.quality.made_heads import grid, head_of
 from tests.synthetic import quad_mesh
 
@@ -103,6 +106,43 @@ def test_what_moves_in_a_still_zone_is_told_with_its_zone(rig: Rig) -> None:
     assert "jawOpen: skull_top moves" in " ".join(shortcomings(found))
 
 
+def test_drift_is_told_in_millimetres(rig: Rig) -> None:
+    zones = {"front": np.arange(rig.mesh.vertex_count) < 5}
+    deltas = np.zeros((rig.mesh.vertex_count, 3))
+    deltas[[3, 9]] = ((0.0, 0.3, 0.4), (0.0, 7.0, 0.0))
+    moving = rig.with_targets([MorphTarget.from_dense("shape", deltas)])
+    assert drifts(moving, zones, 10.0) == [Drift(pytest.approx(5.0), "front")]
+
+
+def test_faults_of_the_mouth_bag_are_told_apart_from_those_that_show(rig: Rig) -> None:
+    subject = subject_of(rig, None)
+    head, lips = subject.head, subject.lips
+    assert head is not None
+    assert lips is not None
+    bag = np.flatnonzero(lips.inside & (lips.distance > 8.0))
+    show = head.skin_vertex("8.2")
+    for vertex, hidden in ((int(bag[0]), True), (show, False)):
+        change = {int(v): np.full(3, 30.0) for v in head.skin.source[head.skin.welded == vertex]}
+        shape = inspect_rig(broken(rig, "rest", change)).shape("rest")
+        assert (shape.hidden_faults.stretched > 0) == hidden
+        assert (shape.skin_faults.stretched > 0) != hidden
+        assert not shape.part_faults.any
+
+
+def test_sockets_and_the_mouth_bag_are_hidden_but_the_rim_of_the_lips_shows(rig: Rig) -> None:
+    subject = subject_of(rig, None)
+    lips = subject.lips
+    assert lips is not None
+    for margins in subject.lids.values():
+        assert margins.slit.inside.any()
+        assert subject.hidden[margins.slit.inside].all()
+        assert not subject.visible[margins.slit.inside].any()
+    rim = lips.inside & (lips.distance < 2.0)
+    assert rim.any()
+    assert subject.visible[rim].all()
+    assert not subject.visible[lips.inside & (lips.distance > 4.0)].any()
+
+
 def test_a_mouth_that_does_not_open_and_a_lid_that_does_not_close_fail(rig: Rig) -> None:
     nothing = np.zeros((0, 3))
     half = rig.target("eyeBlinkLeft")
@@ -148,6 +188,7 @@ def test_without_landmarks_only_what_needs_no_anatomy_is_reported() -> None:
     assert (shape.motion.moved, shape.motion.vertex) == (2, 4)
     assert shape.motion.largest == pytest.approx(2.5)
     assert shape.motion.mean == pytest.approx(1.4)
+    assert found.rows()[0]["percent"] == pytest.approx(250.0 / found.size)
     assert shape.skin_faults.inverted == 1
     assert (shape.seam, shape.drift, shape.asymmetry, shape.cracks) == (None, None, None, None)
     assert json.dumps(found.to_json(), allow_nan=False)
@@ -167,6 +208,27 @@ def test_a_head_without_lip_landmarks_says_so_and_measures_the_rest(rig: Rig) ->
     assert any(note.startswith("lip seam not measured: landmarks:") for note in found.notes)
     assert found.shape("jawOpen").seam is None
     assert found.shape("eyeBlinkLeft").lids["l"].left < 5.0
+
+
+def test_a_rig_without_shapes_has_an_empty_report(rig: Rig) -> None:
+    found = inspect_rig(rig.with_targets([]))
+    assert found.shapes == ()
+    assert found.rows() == []
+    assert found.vertex_count == rig.mesh.vertex_count
+
+
+@pytest.mark.parametrize("factor", [-1.0, 1e6])
+def test_a_senseless_shape_is_still_measured(rig: Rig, factor: float) -> None:
+    target = MorphTarget.from_dense("nonsense", factor * rig.mesh.positions)
+    found = inspect_rig(rig.with_targets([target]))
+    assert json.dumps(found.to_json(), allow_nan=False)
+    faults = found.shape("nonsense").skin_faults
+    assert faults.collapsed > 1000 if factor < 0.0 else faults.stretched > 1000
+
+
+def test_an_unknown_shape_is_refused(report: QualityReport) -> None:
+    with pytest.raises(ParameterError, match="report: no shape 'smile'"):
+        report.shape("smile")
 
 
 def test_progress_names_every_measure_once(rig: Rig) -> None:

@@ -53,6 +53,14 @@ def test_a_part_that_moves_along_is_not_entered() -> None:
     assert measured(deltas).depth == 0.0
 
 
+def test_a_ball_that_turns_is_as_deep_as_one_that_rests() -> None:
+    turn = Rotation.from_euler("yx", [40.0, -20.0], degrees=True).as_matrix()
+    deltas = pushed(1.0)
+    centre = np.array([4.0, 4.0, -6.0])
+    deltas[SKIN.vertex_count :] = (BALL.positions - centre) @ turn.T + centre - BALL.positions
+    assert measured(deltas).depth == pytest.approx(1.0, abs=0.05)
+
+
 def test_a_ball_that_comes_out_enters_skin_that_rests() -> None:
     deltas = np.zeros((COUNT, 3))
     deltas[SKIN.vertex_count :, 2] = 1.7

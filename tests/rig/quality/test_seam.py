@@ -77,6 +77,19 @@ def test_a_run_of_wrong_vertices_is_found_as_a_whole() -> None:
     assert judged(deltas).lost == tuple(sorted(LOWER[14:20].tolist()))
 
 
+def test_a_long_run_of_wrong_vertices_is_found_without_a_jaw() -> None:
+    deltas = opened()
+    deltas[CHIN] = 0.0
+    deltas[LOWER[11:19]] = deltas[UPPER[11:19]]
+    assert judged(deltas).lost == tuple(sorted(LOWER[11:19].tolist()))
+
+
+def test_lips_that_close_have_no_gap() -> None:
+    deltas = np.zeros((HEAD.vertex_count, 3))
+    deltas[LOWER[1:-1], 1] = 0.05
+    assert judged(deltas).gap == pytest.approx(0.0, abs=1e-12)
+
+
 def test_half_a_lip_that_stays_behind_is_found_by_the_jaw_rule() -> None:
     deltas = opened()
     half = slice(5, 14)
@@ -89,6 +102,15 @@ def test_a_muscle_that_lowers_one_side_of_the_lip_is_no_fault() -> None:
     deltas = np.zeros((HEAD.vertex_count, 3))
     deltas[LOWER] = np.exp(-(((PLACE - 0.3) / 0.1) ** 2))[:, None] * DOWN
     deltas[CHIN] = 0.3 * DOWN
+    seam = judged(deltas)
+    assert (seam.lost, seam.invented) == ((), ())
+
+
+def test_what_only_the_corners_do_is_no_fault() -> None:
+    deltas = np.zeros((HEAD.vertex_count, 3))
+    for end in (slice(0, 3), slice(-3, None)):
+        deltas[UPPER[end]] = (0.0, -1.0, 0.5)
+        deltas[LOWER[end]] = (0.0, 1.0, 0.5)
     seam = judged(deltas)
     assert (seam.lost, seam.invented) == ((), ())
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 import numpy as np
 
 from risorius._check import BoolArray, FloatArray
+from risorius.controls.standard import device_controls
 from risorius.head.head import Head
 from risorius.landmarks.landmark_set import LandmarkSpec
 from risorius.mesh.core import TriMesh
@@ -86,7 +87,8 @@ def inspect_rig(
         notes.append("symmetry not measured: the neutral skin is not symmetric")
         mirror = [None] * count
     else:
-        partner_of = {name: mirror_shape(name, rig.controls) for name in rig.names}
+        controls = (*device_controls(), *rig.controls)
+        partner_of = {name: mirror_shape(name, controls) for name in rig.names}
         mirror = asymmetries(rig.names, skin, pairing, partner_of=partner_of)
     cracked = cracks(rig, head)
     shapes = tuple(

@@ -71,14 +71,15 @@ def lid_gaps(head: Head, margins: LidMargins, side: str, deltas: FloatArray) -> 
     def gap(moved: FloatArray) -> FloatArray:
         above = contour(margins.slit.upper, moved, lowest=True)
         below = contour(margins.slit.lower, moved, lowest=False)
-        return above - below
+        # A place that a margin does not reach any more, in a head squeezed to a point, is closed.
+        return np.nan_to_num(above - below, nan=0.0)
 
-    opening = float(np.nanmax(gap(np.zeros((1, *rest.shape)))))
+    opening = float(gap(np.zeros((1, *rest.shape))).max())
     if not opening > 0.0:
         return []
     share = 100.0 * gap(deltas) / opening
-    left = np.nanmax(np.maximum(share, 0.0), axis=1)
-    overlap = np.nanmax(np.maximum(-share, 0.0), axis=1)
+    left = np.maximum(share, 0.0).max(axis=1)
+    overlap = np.maximum(-share, 0.0).max(axis=1)
     return [LidGap(float(a), float(b)) for a, b in zip(left, overlap)]
 
 

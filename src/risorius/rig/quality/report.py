@@ -56,8 +56,14 @@ class ShapeQuality:
     drift: Drift | None
     asymmetry: Asymmetry | None
 
-    def row(self) -> dict[str, Cell]:
-        """Return the shape as one row of a table: column name -> value."""
+    def row(self, size: float) -> dict[str, Cell]:
+        """Return the shape as one row of a table: column name -> value.
+
+        Parameters
+        ----------
+        size : float
+            Of the head, in the report's unit.
+        """
         seam, drift, mirror = self.seam, self.drift, self.asymmetry
         depth = max((each.depth for each in self.penetration.values()), default=None)
         deepest = max(self.penetration, key=lambda kind: self.penetration[kind].added, default="")
@@ -67,6 +73,7 @@ class ShapeQuality:
             "moved": self.motion.moved,
             "largest": self.motion.largest,
             "mean": self.motion.mean,
+            "percent": 100.0 * self.motion.largest / size if size else 0.0,
             "lost": None if seam is None else len(seam.lost),
             "invented": None if seam is None else len(seam.invented),
             "gap": None if seam is None else seam.gap,
@@ -137,10 +144,11 @@ class QualityReport:
         """Return one row per shape, column name -> value; None where nothing was measured.
 
         Columns: `largest`, `mean`, `gap`, `depth`, `added` and `drift` are lengths in `unit`,
-        `opening` the lip gap over the chin's travel, `lid_l`, `lid_r` and `asymmetry` percent,
-        `inside` the faulty triangles that do not show, the others counts.
+        `percent` is `largest` in percent of `size`, `opening` the lip gap over the chin's travel,
+        `lid_l`, `lid_r` and `asymmetry` percent, `inside` the faulty triangles that do not show,
+        the others counts.
         """
-        return [shape.row() for shape in self.shapes]
+        return [shape.row(self.size) for shape in self.shapes]
 
     def to_json(self) -> dict[str, Any]:
         """Return the report as plain numbers, texts, lists and mappings."""

@@ -17,7 +17,7 @@ __all__ = ["Seam", "SeamTest"]
 # jaw rule leaves more of them out, there the lips still meet.
 _END, _JAW_END = 0.06, 0.12
 _MIDDLE = (0.35, 0.65)
-_DEGREE = 5
+_DEGREE = 3
 _ROUNDS = 15
 # The lips must part by this share of the largest motion for a vertex to be on the wrong side.
 _PART = 0.3
@@ -60,13 +60,13 @@ class Seam:
 class SeamTest:
     """The contact lines of the lips, ready to be judged in many shapes at once.
 
-    Each line's motion is described by a polynomial of degree five along the line that minimises
-    the sum of distances (not of squares), so that single vertices, and runs of them up to nearly
-    half a lip, do not bend it. A vertex is wrong if its motion is nearer to the other lip's
-    polynomial than to its own, the two differ by more than 30 % of the largest seam motion, and
-    its own lip parts from the other again on both sides of it (a vertex at the foot of a short
-    muscle's hump, with nothing but rest beyond, is sound). It is *invented* if its own lip moves
-    less than the other there, else *lost*.
+    Each line's motion is described by a cubic along the line that minimises the sum of distances
+    (not of squares), so that wrong vertices, and runs of them up to a fifth of the line, do not
+    bend it. A vertex is wrong if its motion is nearer to the other lip's cubic than to its own,
+    the two differ by more than 30 % of the largest seam motion, and its own lip parts from the
+    other again on both sides of it (a vertex at the foot of a short muscle's hump, with nothing
+    but rest beyond, is sound). It is *invented* if its own lip moves less than the other there,
+    else *lost*. The corners, 6 % of the lines at each end, belong to both lips and do not count.
 
     Where the jaw opens the mouth a second rule finds what the first cannot, a large part of a lip
     that stays: opposite vertices that part by less than 10 % of what the middles do are wrong;
@@ -105,9 +105,8 @@ class SeamTest:
             Displacements of the welded skin [mm].
         """
         upper, lower = (deltas[:, line] for line in self._lines)
-        largest = np.maximum(
-            _lengths(upper).max(axis=1, initial=0.0), _lengths(lower).max(axis=1, initial=0.0)
-        )
+        inner = [moved[:, judged] for moved, judged in zip((upper, lower), self._judged)]
+        largest = np.maximum(*(_lengths(moved).max(axis=1, initial=0.0) for moved in inner))
         wrong_upper, wrong_lower = self._by_side(upper, lower, largest)
         chin = _lengths(deltas[:, self._chin]) if self._chin >= 0 else np.zeros(len(deltas))
         self._by_jaw((upper, lower), largest, chin, (wrong_upper, wrong_lower))
@@ -131,7 +130,7 @@ class SeamTest:
     def _by_side(
         self, upper: FloatArray, lower: FloatArray, largest: FloatArray
     ) -> tuple[IntArray, IntArray]:
-        """Return (s, k) per line: 0 right, 1 lost, 2 invented, by the two polynomials."""
+        """Return (s, k) per line: 0 right, 1 lost, 2 invented, by the two cubics."""
         bases = [_basis(place, len(place)) for place in self._places]
         columns = min(basis.shape[1] for basis in bases)
         bases = [basis[:, :columns] for basis in bases]
@@ -158,7 +157,7 @@ class SeamTest:
         """
         gaps = np.abs(self._places[side][:, None] - self._places[1 - side][None])
         nearest = np.argsort(gaps, axis=1, kind="stable")[:, :_NEAREST]
-        parted = _lengths(moved - np.median(other[:, nearest], axis=2))
+        parted = _lengths(moved - np.median(other[:, nearest], axis=2)) * self._judged[side]
         before = np.maximum.accumulate(parted, axis=1)
         after = np.maximum.accumulate(parted[:, ::-1], axis=1)[:, ::-1]
         around = np.minimum(before, after)
