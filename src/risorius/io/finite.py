@@ -17,7 +17,7 @@ LARGEST = 3e38
 
 
 def as_doubles(values: npt.NDArray[Any]) -> FloatArray:
-    """Return `values` as float64; a signalling NaN from a file becomes a quiet one."""
+    """Return `values` (...) as float64 (...); a signalling NaN of a file becomes a quiet one."""
     with np.errstate(invalid="ignore"):
         return values.astype(np.float64)
 

@@ -104,7 +104,7 @@ class Archive:
         return values.astype(np.int32)
 
     def rows(self, name: str, shape: tuple[int, ...]) -> Iterator[FloatArray]:
-        """Yield the float64 entries of an array of `shape` one by one."""
+        """Yield the float64 entries (...) of an array (k, ...) of `shape` one by one."""
         with self._open(name) as (file, dtype, found):
             if found != shape or dtype.kind != "f":
                 raise FormatError(f"{self.path}: {name}: expected numbers of shape {shape}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, cast, get_args
@@ -38,8 +39,14 @@ class RigInfo:
 
 
 def rig_to_json(rig: Rig) -> dict[str, Any]:
-    """Return what `rig_info` reads."""
-    return {
+    """Return what `rig_info` reads.
+
+    Raises
+    ------
+    FormatError
+        If a number is not finite.
+    """
+    document = {
         "schema": SCHEMA,
         "version": VERSION,
         "frame": {
@@ -58,6 +65,13 @@ def rig_to_json(rig: Rig) -> dict[str, Any]:
         "left_out": dict(rig.left_out),
         "parts": list(rig.part_names),
     }
+    try:
+        json.dumps(document, allow_nan=False)
+    except ValueError:
+        raise FormatError(
+            "rig: frame, landmarks, controls or poses hold a number that is not finite"
+        ) from None
+    return document
 
 
 def rig_info(value: object, where: str) -> RigInfo:

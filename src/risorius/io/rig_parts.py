@@ -79,6 +79,8 @@ class RigNormals:
 
     def turned(self, target: MorphTarget) -> FloatArray:
         """Return how the rows of `rest` turn (k, 3) in a target; zero where hardly."""
+        if not len(target.vertices):
+            return np.zeros_like(self.rest)
         moved = np.zeros(self._vertex_count, bool)
         moved[target.vertices] = True
         here = moved[self._vertex]

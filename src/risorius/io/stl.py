@@ -85,8 +85,7 @@ def _ascii_corners(data: bytes, where: str) -> FloatArray:
 
 
 def _joined(corners: FloatArray) -> PolygonMesh:
-    # Adding zero makes -0 and 0 equal.
-    _, first, place = np.unique(corners + 0.0, axis=0, return_index=True, return_inverse=True)
+    _, first, place = np.unique(corners, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)
     rank = np.empty(len(order), np.int32)
     rank[order] = np.arange(len(order))

@@ -48,7 +48,7 @@ class BinaryBuilder:
         self._zeros: dict[int, int] = {}
 
     def view(self, data: npt.NDArray[Any], *, target: int | None = None, name: str = "") -> int:
-        """Add the bytes of an array and return the index of its buffer view."""
+        """Add the bytes of `data` (...) and return the index of its buffer view."""
         view: dict[str, Any] = {"buffer": 0, **self._place(data.tobytes())}
         if target is not None:
             view["target"] = target
@@ -60,7 +60,7 @@ class BinaryBuilder:
     def accessor(
         self, values: npt.NDArray[Any], *, target: int | None = ARRAY_BUFFER, bounds: bool = False
     ) -> int:
-        """Add an array (n,) or (n, 2..3) and return the index of its accessor."""
+        """Add `values` (n,) or (n, 2..3) and return the index of their accessor."""
         accessor = _described(values, bounds)
         accessor["bufferView"] = self.view(values, target=target)
         return self._add(accessor)
@@ -73,7 +73,7 @@ class BinaryBuilder:
         *,
         bounds: bool,
     ) -> int:
-        """Add an accessor of `count` vectors that are zero but in `rows`.
+        """Add an accessor of `count` vectors, zero but for `values` (k, 3) in `rows` (k,).
 
         It is sparse, or full where that is smaller; without rows it needs no bytes and is shared.
         """

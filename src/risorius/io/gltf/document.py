@@ -56,10 +56,6 @@ class Document:
         self._values_left = _MOST_VALUES
         self._require_understood()
 
-    def __len__(self) -> int:
-        """Return the size of all buffers loaded so far [bytes]."""
-        return sum(map(len, self._buffers.values()))
-
     def elements(self, kind: str) -> range:
         """Return the indices of a top-level list such as ``"nodes"``."""
         return range(len(self.root.items(kind)))
@@ -108,7 +104,7 @@ class Document:
                 raise FormatError(
                     f"{fields.where}: holds {len(data)} bytes and claims {length}; is it cut off?"
                 )
-            if len(self) + length > _LIMIT:
+            if sum(map(len, self._buffers.values())) + length > _LIMIT:
                 raise FormatError(f"{fields.where}: buffers exceed {_LIMIT // MEGABYTE} MB")
             self._buffers[index] = data[:length]
         return self._buffers[index]

@@ -87,18 +87,22 @@ def _piece(document: Document, placed: Placed, primitive: Fields, mode: int) -> 
     triangles = _triangles(document, primitive, mode, len(positions))
     if mirrored:
         triangles = triangles[:, ::-1]
-    material = optional_index(primitive, "material")
     return Piece(
         placed.name,
-        ""
-        if material is None
-        else document.element("materials", material, primitive.where).text("name", default=""),
+        _material(document, primitive),
         positions,
         np.ascontiguousarray(triangles),
         _uvs(document, attributes, len(positions)),
         _source(document, attributes, len(positions)),
         _targets(document, placed.mesh, primitive, linear, len(positions)),
     )
+
+
+def _material(document: Document, primitive: Fields) -> str:
+    index = optional_index(primitive, "material")
+    if index is None:
+        return ""
+    return document.element("materials", index, primitive.where).text("name", default="")
 
 
 def _triangles(document: Document, primitive: Fields, mode: int, count: int) -> LongArray:

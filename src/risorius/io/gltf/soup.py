@@ -61,7 +61,7 @@ class Soup:
         )
 
     def uv_corners(self, corners: npt.NDArray[np.integer]) -> npt.NDArray[np.int32]:
-        """Return the texture coordinate of each corner given by its vertex in this soup."""
+        """Return the texture coordinate (c,) of `corners` (c,) given by vertices of this soup."""
         if not self.has_uv.any():
             return np.zeros(0, np.int32)
         return np.where(self.has_uv[corners], corners, -1).astype(np.int32)
