@@ -88,6 +88,13 @@ def test_the_jaw_carries_what_muscles_and_lids_have_moved() -> None:
     np.testing.assert_allclose(moved, expected - skin.mesh.positions, atol=1e-12)
 
 
+def test_a_cheek_blows_up_at_1_and_falls_in_at_minus_1() -> None:
+    blown, sunken = (MECHANICS.pose(NEUTRAL, {"cheek_puff_l": end})[:, 0] for end in (1.0, -1.0))
+    assert blown.max() > 2.0
+    assert blown.max() > -blown.min()
+    assert -sunken.min() > sunken.max()
+
+
 def test_a_head_without_eye_landmarks_has_no_lids_and_says_so() -> None:
     mechanics = made_up_mechanics()
     assert mechanics.notes == (

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius.anatomy.smooth_step import smooth_step
-from risorius.anatomy.support import support_directions
+from risorius.anatomy.support import _AXES, support_directions
 
 HINGE = np.array([0.0, -10.0, -20.0])
 POINTS = np.random.default_rng(2).normal(scale=50.0, size=(60, 3))
@@ -32,6 +32,17 @@ def test_it_is_mirror_symmetric_and_scales_with_the_head() -> None:
     np.testing.assert_array_equal(mirrored, normal * mirror)
     scaled = support_directions(9.0 * POINTS, hinge=9.0 * HINGE, face_height=9.0 * 115.0)
     np.testing.assert_allclose(scaled, normal, atol=1e-12)
+
+
+def test_the_directions_are_normals_of_one_ellipsoid() -> None:
+    axes = 115.0 * np.asarray(_AXES)
+    unit = POINTS / np.linalg.norm(POINTS, axis=1, keepdims=True)
+    on_it = HINGE + axes * unit
+    normal = support_directions(on_it, hinge=HINGE, face_height=115.0)
+    # A step along the tangent stays on the surface to first order.
+    side = np.cross(normal, [0.3, -0.5, 0.8])
+    value = (((on_it + 1e-4 * side - HINGE) / axes) ** 2).sum(axis=1)
+    np.testing.assert_allclose(value, 1.0, atol=1e-9)
 
 
 def test_at_the_hinge_itself_nothing_is_supported() -> None:
