@@ -44,7 +44,7 @@ def test_closed_margins_meet_all_along_the_eye() -> None:
     moved = LIDS.move(REST, upper=1.0, lower=1.0)
     opening = _pitch(LIDS, REST[SHEET.upper]) - _pitch(LIDS, REST[SHEET.lower])
     gap = _pitch(LIDS, moved[SHEET.upper]) - _pitch(LIDS, moved[SHEET.lower])
-    assert np.abs(gap).max() < 0.02 * opening.max()
+    assert np.abs(gap).max() < 0.03 * opening.max()
 
 
 def test_the_upper_lid_makes_most_of_the_way() -> None:
