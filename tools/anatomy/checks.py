@@ -51,11 +51,11 @@ def _lips(skin):
     upper = triangles(skin, groups=("vermilion_upper",))
     lower = triangles(skin, groups=("vermilion_lower",))
     shared = skin.positions[np.intersect1d(upper, lower)]
-    spread = np.ptp(np.abs(shared[:, 0]))
+    spread = round(float(np.ptp(np.abs(shared[:, 0]))), 2)
     own = skin.positions[np.setdiff1d(lower, upper)]
     gap = closest_on_mesh(skin.positions, upper, own)[2].min()
     return [
-        ("lips: shared vertices, spread in x [mm]", (len(shared), round(spread, 2)), spread < 3),
+        ("lips: shared vertices, spread in x [mm]", (len(shared), spread), spread < 3),
         ("lips: least gap [mm]", round(float(gap), 4), gap > 0.01),
     ]
 

@@ -19,7 +19,7 @@ def add_nose(points, skin):
     side = tube(
         points, [(5, 0, 81, 4.2), (6.2, -12, 83, 5.5), (8, -24, 87.5, 7.5), (10, -35, 92.5, 9)], 16
     )
-    skin = union(skin, union(bridge, side, 9), 13)
+    skin = union(skin, union(bridge, side, 12), 15)
     tip = ellipsoid(points, (0, -39, 104.6), (8, 7.4, 7.8))
     tip = union(tip, ellipsoid(points, (4, -39.4, 106), (4.8, 5, 5.2)), 5)
     wing = ellipsoid(points, (12.4, -41.2, 96.2), (5.2, 6.2, 8.4), rotation(12, 22, 0))

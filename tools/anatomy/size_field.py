@@ -15,10 +15,10 @@ def edge_length(points):
         return np.maximum(np.linalg.norm(points - np.asarray(centre), axis=1) - radius, 0.0)
 
     growth = 0.15 - 0.07 * np.clip(z / 60.0, 0.0, 1.0)
-    forehead = 5.0 + 0.15 * np.maximum(0.0, np.abs(y - 25) - 20) + 0.12 * np.maximum(0.0, 70 - z)
+    forehead = 4.6 + 0.15 * np.maximum(0.0, np.abs(y - 25) - 20) + 0.12 * np.maximum(0.0, 70 - z)
     return np.min(
         [
-            np.full(len(points), 10.5),
+            np.full(len(points), 9.0),
             3.0 + growth * beyond((0, -68, 92), 32),
             2.0 + growth * beyond((32, 6, 80), 22),
             3.0 + growth * beyond((22, -42, 90), 14),
