@@ -8,12 +8,18 @@ import numpy as np
 
 from .arches import ARCHES, crowns
 from .closest import closest_on_mesh
+from .eye_loops import CREASE_ROW
 from .landmark_places import BONE_PLACES, EAR_PLACES, MIRROR_NAMES, SKIN_PLACES
 from .mouth_loops import BORDER_ROW, COLUMNS_PER_LIP
 from .part import triangles_of
 from .tongue import TONGUE_COLUMNS, TONGUE_ROWS
 
 __all__ = ["bone_landmarks", "head_landmarks", "landmark_text"]
+
+# rows outside of the lower lid margin where the lid ends
+_LOWER_LID_ROW = 2
+# rows behind the tip of the tongue where its body is widest
+_BEHIND_TIP = 6
 
 
 def _nearest(positions, place, candidates=None):
@@ -50,8 +56,8 @@ def _lids(half):
         "3.3": margin[bottom],
         "3.7": margin[int(place[:, 0].argmax())],
         "3.11": margin[int(place[:, 0].argmin())],
-        "3.13": half.eye_rows[half.eye_margin - 3][top],
-        "3.9": half.eye_rows[half.eye_margin - 2][bottom],
+        "3.13": half.eye_rows[half.eye_margin - CREASE_ROW][top],
+        "3.9": half.eye_rows[half.eye_margin - _LOWER_LID_ROW][bottom],
     }
 
 
@@ -67,7 +73,7 @@ def _brow(half):
 
 def _tongue():
     """Return vertex numbers inside the tongue."""
-    row, quarter = TONGUE_ROWS - 6, TONGUE_COLUMNS // 4
+    row, quarter = TONGUE_ROWS - _BEHIND_TIP, TONGUE_COLUMNS // 4
     first = row * TONGUE_COLUMNS
     return {
         "6.1": TONGUE_ROWS * TONGUE_COLUMNS + 1,
