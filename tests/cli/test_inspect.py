@@ -32,6 +32,13 @@ def test_a_limit_that_is_passed_ends_with_1(rig_file: Path) -> None:
     assert any(text.startswith("jawOpen: largest") for text in told["beyond"])
 
 
+def test_a_limit_that_is_just_reached_passes(rig_file: Path) -> None:
+    told = answer(run("inspect", rig_file, *GENEROUS, "--json"))
+    most = max(shape["motion"]["moved"] for shape in told["report"]["shapes"])
+    assert run("inspect", rig_file, *GENEROUS, "--bar", f"moved={most}").exit_code == 0
+    assert run("inspect", rig_file, *GENEROUS, "--bar", f"moved={most - 1}").exit_code == 1
+
+
 def test_rows_are_sorted_largest_first(rig_file: Path) -> None:
     result = run("inspect", rig_file, *GENEROUS, "--sort", "largest")
     lines = result.stdout.splitlines()

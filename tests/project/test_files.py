@@ -63,6 +63,8 @@ def test_paths_are_written_as_seen_from_the_project(tmp_path: Path, monkeypatch)
     assert document["landmarks"] == "../marks/head.json"
     monkeypatch.chdir(tmp_path)
     assert read_project("work/out.json").head == Path("work/head.obj")
+    write_project(Project(head=Path("heads/head.obj")), "work/out.json")
+    assert json.loads(Path("work/out.json").read_text("utf-8"))["head"] == "../heads/head.obj"
 
 
 def test_the_built_in_head_has_a_word(tmp_path: Path) -> None:

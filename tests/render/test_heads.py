@@ -63,6 +63,9 @@ def test_views_show_what_they_are_called_after(portrait: Portrait) -> None:
     }.items():
         seen = portrait.camera(view).project(marks.positions(names), size)
         assert ((seen[:, :2] > 0) & (seen[:, :2] < 200)).all(), view
+    for view in ("three-quarter", "profile"):
+        left, right = portrait.camera(view).project(marks.positions(("3.7", "3.12")), size)
+        assert left[2] < right[2], "the character's left side is nearer"
     mouth = portrait.camera("mouth").project(marks.positions(("2.4", "2.5")), size)
     assert mouth[0, 0] - mouth[1, 0] > 60  # the character's left is at the right of the picture
     assert set(VIEWS) == {"front", "three-quarter", "profile", "face", "mouth", "eyes"}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from textwrap import shorten
 from typing import Any
 
 from risorius.anatomy.mechanics import Mechanics
@@ -14,6 +15,7 @@ from risorius.errors import RisoriusError
 from risorius.head.eyes import find_head_lids
 from risorius.head.head import Head
 from risorius.landmarks import LandmarkSpec, feature_points
+from risorius.mesh.core import TriMesh
 from risorius.mesh.polygon_mesh import PolygonMesh
 from risorius.mesh.topology import report
 from risorius.project import Project, face_of, landmarks_of, presets_of, read_mesh
@@ -96,7 +98,7 @@ def _parts(head: Head, talk: Talk) -> None:
         talk.say(f"  no {kind}: {without}")
 
 
-def _topology(mesh: Any, what: str, talk: Talk) -> None:
+def _topology(mesh: TriMesh, what: str, talk: Talk) -> None:
     found = report(mesh)
     talk.put(
         topology={
@@ -118,7 +120,7 @@ def _topology(mesh: Any, what: str, talk: Talk) -> None:
     )
     talk.say(f"topology ({what}):")
     for sentence in found.sentences():
-        talk.say(f"  {sentence}")
+        talk.say(f"  {shorten(sentence, 120, placeholder=' ...')}")
 
 
 def _shapes(project: Project, head: Head, talk: Talk) -> None:

@@ -47,12 +47,13 @@ def inspect(
 ) -> None:
     """Measure every shape of a rig, also of a rig made elsewhere.
 
-    moved: vertices that move; largest, mean: how far. lost, invented: lip vertices that move
-    with the wrong lip. gap: how far the lips part, opening: the same over the chin's travel.
-    depth, added, into: how deep skin lies in teeth or eyeballs, how much of that the shape adds,
-    and where. lid_l, lid_r: per cent of the eye still open. inverted, collapsed, stretched:
-    triangles; inside: such triangles where nobody sees them. cracks: seams that open. drift:
-    motion of what must rest. asymmetry: per cent between left and right.
+    moved: vertices that move; largest, mean: how far; percent: largest over the head's size.
+    lost, invented: lip vertices that move with the wrong lip. gap: how far the lips part,
+    opening: the same over the chin's travel. depth, added, into: how deep skin lies in teeth or
+    eyeballs, how much of that the shape adds, and where. lid_l, lid_r: per cent of the eye still
+    open. inverted, collapsed, stretched: triangles; inside: such triangles where nobody sees
+    them. cracks: seams that open. drift: motion of what must rest. asymmetry: per cent between
+    left and right.
 
     Ends with exit code 1 if a shape is beyond a limit of --bar.
 
