@@ -22,6 +22,8 @@ POSES = {
     "jawOpen": {"jaw_pitch": 18.0},
     "eyeBlinkLeft": {"lid_upper_l": 1.0, "lid_lower_l": 1.0},
     "eyeBlinkRight": {"lid_upper_r": 1.0, "lid_lower_r": 1.0},
+    "jaw_yaw": {"jaw_yaw": 5.0},
+    "jaw_yaw_neg": {"jaw_yaw": -5.0},
     "rest": {},
 }
 
@@ -52,6 +54,10 @@ def test_everything_is_measured_on_the_built_in_head(report: QualityReport) -> N
     assert opened.asymmetry is not None
     assert opened.asymmetry.largest < 1.0
     assert set(opened.penetration) == {"teeth_upper", "teeth_lower", "eye_left", "eye_right"}
+    yaw = report.shape("jaw_yaw").asymmetry
+    assert yaw is not None
+    assert yaw.partner == "jaw_yaw_neg"
+    assert yaw.largest < 1.0
     blink = report.shape("eyeBlinkLeft")
     assert blink.lids["l"].left < 5.0
     assert blink.lids["r"].left == pytest.approx(100.0, rel=1e-9)

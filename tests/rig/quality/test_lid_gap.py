@@ -7,110 +7,132 @@ from risorius.head import Head
 from risorius.mesh.core import TriMesh
 from risorius.mesh.lids import LidMargins
 from risorius.mesh.slit import Slit
-from risorius.rig.quality.lid_gap import lid_gaps
+from risorius.rig.quality.lid_gap import LidGap, lid_gaps
 from tests.rig.quality.made_heads import ball, head_of
 
 CENTRE = np.array([30.0, 0.0, -14.0])
 RADIUS = 12.0
-COUNT = 21
-SPAN = np.radians(55.0)
+COUNT, ROWS = 41, 8
+SPAN = np.radians(40.0)
 YAW = np.linspace(-SPAN, SPAN, COUNT)
 PITCH = np.radians(20.0) * np.cos(0.5 * np.pi * YAW / SPAN)
+EDGE = np.radians(75.0)
 
 
-def on_ball(yaw: np.ndarray, pitch: np.ndarray, radius: float = RADIUS) -> np.ndarray:
-    ring = np.stack([np.sin(yaw), 0.0 * yaw, np.cos(yaw)], axis=1)
-    # Turn about the x axis through the centre: the pitch as the eye sees it.
-    y = ring[:, 2] * np.sin(pitch)
-    z = ring[:, 2] * np.cos(pitch)
-    return CENTRE + radius * np.stack([ring[:, 0], y, z], axis=1)
+def on_ball(yaw: np.ndarray, pitch: np.ndarray, radius: float) -> np.ndarray:
+    """Return points around the eye's centre: aside by `yaw`, then turned up by `pitch`."""
+    aside, ahead = np.sin(yaw), np.cos(yaw)
+    return CENTRE + radius * np.stack(
+        [aside, ahead * np.sin(pitch), ahead * np.cos(pitch)], axis=-1
+    )
 
 
-def eye(*, with_ball: bool = True) -> tuple[Head, LidMargins]:
-    upper = on_ball(YAW, PITCH)
-    lower = on_ball(YAW, -PITCH)[1:-1]
-    positions = np.concatenate([upper, lower])
-    skin = TriMesh(positions, np.array([[0, 1, COUNT]], np.int32))
-    upper_line = np.arange(COUNT, dtype=np.int32)
-    inner = np.arange(COUNT, 2 * COUNT - 2)
-    lower_line = np.concatenate([[0], inner, [COUNT - 1]]).astype(np.int32)
+def lids(upper: np.ndarray, lower: np.ndarray, radius: float = RADIUS) -> np.ndarray:
+    """Return the skin: rows of the upper lid from its margin outwards, then of the lower lid."""
+    rows = np.linspace(0.0, 1.0, ROWS)[:, None]
+    yaw = np.broadcast_to(YAW, (ROWS, COUNT))
+    above = on_ball(yaw, upper + rows * (EDGE - upper), radius)
+    below = on_ball(yaw, lower - rows * (EDGE + lower), radius)
+    return np.concatenate([above.reshape(-1, 3), below.reshape(-1, 3)])
+
+
+def eye(*, with_ball: bool = True, mirrored: bool = False) -> tuple[Head, LidMargins]:
+    positions = lids(PITCH, -PITCH)
+    first = (np.arange(ROWS - 1)[:, None] * COUNT + np.arange(COUNT - 1)).ravel()
+    half = np.concatenate(
+        [
+            np.stack([first, first + 1, first + 1 + COUNT], axis=1),
+            np.stack([first, first + 1 + COUNT, first + COUNT], axis=1),
+        ]
+    )
+    count = ROWS * COUNT
+    faces = np.concatenate([half, half + count])
+    # Both lids share the corners.
+    faces[faces == count] = 0
+    faces[faces == count + COUNT - 1] = COUNT - 1
+    upper = np.arange(COUNT, dtype=np.int32)
+    lower = np.concatenate([[0], count + np.arange(1, COUNT - 1), [COUNT - 1]]).astype(np.int32)
     n = len(positions)
-    slit = Slit(upper_line, lower_line, np.zeros(n, bool), 1.0)
-    width = float(np.linalg.norm(upper[-1] - upper[0]))
+    width = float(np.linalg.norm(positions[COUNT - 1] - positions[0]))
+    slit = Slit(upper, lower, np.zeros(n, bool), 1.0)
     margins = LidMargins(slit, np.zeros(n), np.zeros(n), width, 8.0)
-    parts = {"skin": skin}
+    flip = np.array([-1.0, 1.0, 1.0]) if mirrored else np.ones(3)
+    parts = {"skin": TriMesh(positions * flip, faces)}
     if with_ball:
-        parts["eye_left"] = ball((30.0, 0.0, -14.0), RADIUS)
+        centre = CENTRE * flip
+        kind = "eye_right" if mirrored else "eye_left"
+        parts[kind] = ball((centre[0], centre[1], centre[2]), 0.98 * RADIUS)
     return head_of(parts), margins
 
 
 HEAD, MARGINS = eye()
 
 
-def moved(upper: np.ndarray, lower: np.ndarray, radius: float = RADIUS) -> np.ndarray:
-    rest = HEAD.skin.mesh.positions
-    posed = rest.copy()
-    posed[MARGINS.slit.upper[1:-1]] = on_ball(YAW, upper, radius)[1:-1]
-    posed[MARGINS.slit.lower[1:-1]] = on_ball(YAW, lower, radius)[1:-1]
-    return posed - rest
+def gap_of(upper: np.ndarray, lower: np.ndarray, radius: float = RADIUS) -> LidGap:
+    deltas = lids(upper, lower, radius) - HEAD.skin.mesh.positions
+    return lid_gaps(HEAD, MARGINS, "l", deltas[None])[0]
 
 
 @pytest.mark.parametrize("share", [0.0, 0.25, 0.5, 0.9, 1.0])
 def test_lids_that_close_by_a_share_leave_the_rest(share: float) -> None:
-    closing = moved(PITCH * (1.0 - 2.0 * share), -PITCH)
-    gap = lid_gaps(HEAD, MARGINS, "l", closing[None])[0]
-    assert gap.left == pytest.approx(100.0 * (1.0 - share), abs=0.5)
+    gap = gap_of(PITCH * (1.0 - 2.0 * share), -PITCH)
+    assert gap.left == pytest.approx(100.0 * (1.0 - share), abs=1.5)
     assert gap.overlap == pytest.approx(0.0, abs=0.5)
 
 
+def test_an_eye_that_opens_wide_is_more_than_open() -> None:
+    assert gap_of(1.4 * PITCH, -PITCH).left == pytest.approx(120.0, abs=1.5)
+
+
 def test_a_lid_that_bulges_out_is_judged_along_the_line_of_sight() -> None:
-    near, far = (
-        lid_gaps(HEAD, MARGINS, "l", moved(0.2 * PITCH, -0.2 * PITCH, radius)[None])[0]
-        for radius in (RADIUS, 1.3 * RADIUS)
-    )
-    assert far.left == pytest.approx(near.left, rel=0.01)
+    near, far = (gap_of(0.2 * PITCH, -0.2 * PITCH, radius) for radius in (RADIUS, 1.3 * RADIUS))
+    assert near.left == pytest.approx(20.0, abs=1.5)
+    assert far.left == pytest.approx(near.left, abs=1.5)
 
 
 def test_margins_that_pass_each_other_overlap_and_leave_nothing() -> None:
-    gap = lid_gaps(HEAD, MARGINS, "l", moved(-0.6 * PITCH, -0.2 * PITCH)[None])[0]
+    gap = gap_of(-0.6 * PITCH, -0.2 * PITCH)
     assert gap.left == pytest.approx(0.0, abs=0.5)
-    assert gap.overlap == pytest.approx(20.0, abs=0.5)
+    assert gap.overlap == pytest.approx(20.0, abs=1.5)
 
 
 def test_the_widest_place_decides() -> None:
-    pitch = -PITCH.copy()
-    pitch[8] = 0.5 * PITCH[8]
-    gap = lid_gaps(HEAD, MARGINS, "l", moved(pitch, -PITCH)[None])[0]
-    assert 20.0 < gap.left < 80.0
+    upper = -PITCH.copy()
+    # Column 12 lies at the place 0.3.
+    upper[11:14] = 0.5 * PITCH[11:14]
+    expected = 100.0 * 1.5 * PITCH[12] / (2.0 * PITCH.max())
+    assert gap_of(upper, -PITCH).left == pytest.approx(expected, abs=1.5)
 
 
-def test_a_margin_that_runs_to_and_fro_closes_where_any_part_of_it_does() -> None:
-    yaw, share = YAW.copy(), -np.ones(COUNT)
-    # From column 6 the margin jumps to column 14, comes back open, and covers the way once more.
-    yaw[7:13] = np.linspace(YAW[14], YAW[6], 6)
-    share[8:12] = 1.0
-    yaw[13] = YAW[6]
-    posed = HEAD.skin.mesh.positions.copy()
-    pitch = share * np.radians(20.0) * np.cos(0.5 * np.pi * yaw / SPAN)
-    posed[MARGINS.slit.upper[1:-1]] = on_ball(yaw, pitch)[1:-1]
-    deltas = posed - HEAD.skin.mesh.positions
-    assert lid_gaps(HEAD, MARGINS, "l", deltas[None])[0].left < 10.0
+def test_a_margin_traced_behind_the_rim_does_not_open_a_closed_eye() -> None:
+    # The trace runs along the second row; what one sees does not change.
+    line = MARGINS.slit.upper.copy()
+    line[1:-1] += COUNT
+    slit = Slit(line, MARGINS.slit.lower, MARGINS.slit.inside, 1.0)
+    traced = LidMargins(slit, MARGINS.to_upper, MARGINS.to_lower, MARGINS.width, MARGINS.height)
+    deltas = lids(-PITCH, -PITCH) - HEAD.skin.mesh.positions
+    assert lid_gaps(HEAD, traced, "l", deltas[None])[0].left < 1.5
 
 
 def test_an_eye_without_a_ball_is_measured_from_where_its_centre_would_be() -> None:
     head, margins = eye(with_ball=False)
-    closing = moved(-PITCH, -PITCH)
+    closing = lids(-PITCH, -PITCH) - HEAD.skin.mesh.positions
     still, closed = lid_gaps(head, margins, "l", np.stack([0.0 * closing, closing]))
-    assert still.left == pytest.approx(100.0, rel=1e-12)
-    assert closed.left < 1.0
+    assert (still.left, still.overlap) == (100.0, 0.0)
+    assert closed.left < 1.5
 
 
 def test_the_right_eye_is_measured_like_the_left_one() -> None:
-    flip = np.array([-1.0, 1.0, 1.0])
-    parts = {
-        "skin": TriMesh(HEAD.skin.mesh.positions * flip, HEAD.skin.mesh.faces),
-        "eye_right": ball((-30.0, 0.0, -14.0), RADIUS),
-    }
-    closing = moved(0.1 * PITCH, -0.3 * PITCH)
-    right = lid_gaps(head_of(parts), MARGINS, "r", (closing * flip)[None])[0]
-    assert right.left == pytest.approx(lid_gaps(HEAD, MARGINS, "l", closing[None])[0].left)
+    head, margins = eye(mirrored=True)
+    for pose in ((0.1 * PITCH, -0.3 * PITCH), (-0.6 * PITCH, -0.2 * PITCH)):
+        deltas = lids(*pose) - HEAD.skin.mesh.positions
+        right = lid_gaps(head, margins, "r", (deltas * [-1.0, 1.0, 1.0])[None])[0]
+        left = gap_of(*pose)
+        assert right.left == pytest.approx(left.left, abs=1.0)
+        assert right.overlap == pytest.approx(left.overlap, abs=0.1)
+
+
+def test_an_eye_that_skin_covers_at_rest_is_not_measured() -> None:
+    closed = HEAD.skin.mesh.at(lids(-0.1 * PITCH, 0.1 * PITCH))
+    head = head_of({"skin": closed, "eye_left": HEAD.parts["eye_left"].mesh})
+    assert lid_gaps(head, MARGINS, "l", np.zeros((2, closed.vertex_count, 3))) == []

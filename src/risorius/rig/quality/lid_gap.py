@@ -9,19 +9,25 @@ import numpy as np
 from risorius._check import FloatArray, IntArray
 from risorius.head.head import Head
 from risorius.head.part_geometry import fit_sphere
+from risorius.mesh.core import TriMesh
 from risorius.mesh.lids import LidMargins
+from risorius.spatial.raycast import Scene
 
 __all__ = ["LidGap", "lid_gaps"]
 
 # Where the gap is measured, along the eye from the inner corner (0) to the outer one (1).
 _PLACES = np.linspace(0.1, 0.9, 9)
+# Lines of sight at one place [rad]: the step between them, and how far beyond the neutral's
+# opening they reach, for eyes that open wide.
+_STEP, _BEYOND = np.radians(0.25), np.radians(15.0)
+_STEEPEST = np.radians(60.0)
 # Where the line of sight starts behind the corners if there is no eyeball, in eye widths.
 _DEPTH = 0.38
 
 
 @dataclass(frozen=True)
 class LidGap:
-    """What is left between the margins of one eye, in percent of the neutral's largest opening.
+    """What is left between the lids of one eye, in percent of the neutral's largest opening.
 
     Parameters
     ----------
@@ -29,7 +35,7 @@ class LidGap:
         Largest gap at nine places over the middle 80 % of the eye; 100 where nothing moves, 0 in
         a perfect blink [%].
     overlap : float
-        How far the margins pass each other where they do so most [%].
+        How far the traced margins pass each other where they do so most [%].
     """
 
     left: float
@@ -39,9 +45,9 @@ class LidGap:
 def lid_gaps(head: Head, margins: LidMargins, side: str, deltas: FloatArray) -> list[LidGap]:
     """Measure one eye in all shapes.
 
-    The gap at a place is the pitch of the upper margin less that of the lower one, as seen from
-    the centre of the eyeball: lids that lie on the ball are closed where they cover each other
-    in these directions, however thick they are.
+    The gap at a place is the angle over which one looks from the centre of the eyeball outwards
+    without meeting skin; it depends on no traced margin. Places are angles about the same centre,
+    so that a lid that turns about the line of the corners keeps them.
 
     Parameters
     ----------
@@ -52,35 +58,84 @@ def lid_gaps(head: Head, margins: LidMargins, side: str, deltas: FloatArray) -> 
         ``"l"`` or ``"r"``.
     deltas : (s, w, 3) float64
         Displacements of the welded skin [mm].
+
+    Returns
+    -------
+    list of LidGap
+        One per shape; empty if the neutral's lids cover the eye.
+
+    Notes
+    -----
+    Lines of sight are a quarter of a degree apart, about 1 % of an ordinary opening.
     """
-    rest = head.skin.mesh.positions
-    inner, outer = rest[list(margins.slit.corners)]
-    across = (outer - inner) / margins.width
-    centre = _centre(head, side, 0.5 * (inner + outer), margins.width)
-    axis = (across if across[0] > 0.0 else -across) * [1.0, 1.0, 0.0]
-    axis /= np.linalg.norm(axis)
-    up = np.cross([0.0, 0.0, 1.0], axis)
-
-    def contour(line: IntArray, moved: FloatArray, *, lowest: bool) -> FloatArray:
-        points = rest[line] + moved[:, line]
-        place = (points - inner) @ across / margins.width
-        arm = points - centre
-        pitch = np.arctan2(arm @ up, arm[..., 2])
-        return _envelope(place, pitch, lowest=lowest)
-
-    def gap(moved: FloatArray) -> FloatArray:
-        above = contour(margins.slit.upper, moved, lowest=True)
-        below = contour(margins.slit.lower, moved, lowest=False)
-        # A place that a margin does not reach any more, in a head squeezed to a point, is closed.
-        return np.nan_to_num(above - below, nan=0.0)
-
-    opening = float(gap(np.zeros((1, *rest.shape))).max())
-    if not opening > 0.0:
+    view = _View(head, margins, side)
+    if not view.opening > 0.0:
         return []
-    share = 100.0 * gap(deltas) / opening
-    left = np.maximum(share, 0.0).max(axis=1)
-    overlap = np.maximum(-share, 0.0).max(axis=1)
-    return [LidGap(float(a), float(b)) for a, b in zip(left, overlap)]
+    lines = (margins.slit.upper, margins.slit.lower)
+    result: list[LidGap] = []
+    for moved in deltas:
+        if not moved[view.vertices].any():
+            result.append(LidGap(100.0, 0.0))
+            continue
+        left = view.gaps(moved).max() / view.opening
+        passed = view.overlap(lines, moved) / view.opening
+        result.append(LidGap(100.0 * float(left), 100.0 * passed))
+    return result
+
+
+class _View:
+    """Lines of sight from the centre of one eye, and the skin around it that may stop them."""
+
+    def __init__(self, head: Head, margins: LidMargins, side: str) -> None:
+        mesh = head.skin.mesh
+        self._rest = mesh.positions
+        inner, outer = self._rest[list(margins.slit.corners)]
+        self._centre = _centre(head, side, 0.5 * (inner + outer), margins.width)
+        across = (outer - inner) * [1.0, 1.0, 0.0] * np.sign(outer[0] - inner[0])
+        self._axis = across / np.linalg.norm(across)
+        self._up = np.cross([0.0, 0.0, 1.0], self._axis)
+        self._corners = tuple(self._aside(corner - self._centre) for corner in (inner, outer))
+        near = (margins.distance < margins.width)[mesh.faces].all(axis=1)
+        self.vertices, faces = np.unique(mesh.faces[near], return_inverse=True)
+        self._faces: IntArray = faces.reshape(-1, 3).astype(np.int32)
+        self._pitches = np.arange(-_STEEPEST, _STEEPEST, _STEP)
+        self.opening = 0.0
+        rest = np.zeros_like(self._rest)
+        margin = self._rest[np.union1d(margins.slit.upper, margins.slit.lower)] - self._centre
+        low, high = np.quantile(np.arctan2(margin @ self._up, margin[:, 2]), [0.0, 1.0])
+        within = (self._pitches > low - _BEYOND) & (self._pitches < high + _BEYOND)
+        self._pitches = self._pitches[within]
+        if len(self._faces) and len(self._pitches):
+            self.opening = float(self.gaps(rest).max())
+
+    def _aside(self, arm: FloatArray) -> FloatArray:
+        """Return the angle (...) between arms and the plane square to the axis [rad]."""
+        length = np.sqrt((arm * arm).sum(axis=-1))
+        return np.arcsin(np.clip(arm @ self._axis / np.maximum(length, 1e-12), -1.0, 1.0))
+
+    def gaps(self, moved: FloatArray) -> FloatArray:
+        """Return the open angle (9,) at each place [rad]."""
+        start, end = self._corners
+        aside = (start + _PLACES * (end - start))[:, None]
+        ahead, up = np.cos(self._pitches), np.sin(self._pitches)
+        square = ahead[:, None] * [0.0, 0.0, 1.0] + up[:, None] * self._up
+        sights = np.sin(aside)[..., None] * self._axis + np.cos(aside)[..., None] * square
+        skin = TriMesh((self._rest + moved)[self.vertices], self._faces)
+        origins = np.broadcast_to(self._centre, (sights.size // 3, 3))
+        hit = Scene([skin]).cast(origins, sights.reshape(-1, 3)).hit
+        return _STEP * (~hit).reshape(len(_PLACES), -1).sum(axis=1)
+
+    def overlap(self, lines: tuple[IntArray, IntArray], moved: FloatArray) -> float:
+        """Return how far the upper margin lies below the lower one where it does so most [rad]."""
+        contours: list[FloatArray] = []
+        start, end = self._corners
+        for line in lines:
+            arm = self._rest[line] + moved[line] - self._centre
+            place = (self._aside(arm) - start) / (end - start)
+            order = np.argsort(place, kind="stable")
+            pitch = np.arctan2(arm @ self._up, arm[:, 2])
+            contours.append(np.interp(_PLACES, place[order], pitch[order]))
+        return max(float((contours[1] - contours[0]).max()), 0.0)
 
 
 def _centre(head: Head, side: str, middle: FloatArray, width: float) -> FloatArray:
@@ -90,21 +145,3 @@ def _centre(head: Head, side: str, middle: FloatArray, width: float) -> FloatArr
         return fallback
     centre = fit_sphere(part.mesh.positions)[0]
     return centre if np.linalg.norm(centre - fallback) < width else fallback
-
-
-def _envelope(place: FloatArray, pitch: FloatArray, *, lowest: bool) -> FloatArray:
-    """Return (s, 9): the lowest or highest pitch of each polyline (s, k) over the places.
-
-    A margin that is traced along the front and the back edge of a lid by turns passes a place
-    several times; what reaches farthest into the opening is what one sees.
-    """
-    start, end = place[:, :-1, None], place[:, 1:, None]
-    span = end - start
-    along = (_PLACES - start) / np.where(span != 0.0, span, 1.0)
-    crosses = (along >= 0.0) & (along <= 1.0) & (span != 0.0)
-    value = pitch[:, :-1, None] + along * (pitch[:, 1:, None] - pitch[:, :-1, None])
-    if lowest:
-        found = np.where(crosses, value, np.inf).min(axis=1)
-    else:
-        found = np.where(crosses, value, -np.inf).max(axis=1)
-    return np.where(np.isfinite(found), found, np.nan)

@@ -131,11 +131,13 @@ class SeamTest:
         self, upper: FloatArray, lower: FloatArray, largest: FloatArray
     ) -> tuple[IntArray, IntArray]:
         """Return (s, k) per line: 0 right, 1 lost, 2 invented, by the two cubics."""
-        bases = [_basis(place, len(place)) for place in self._places]
-        columns = min(basis.shape[1] for basis in bases)
-        bases = [basis[:, :columns] for basis in bases]
+        fewest = min(int(judged.sum()) for judged in self._judged)
+        if fewest < 2:
+            return np.zeros(upper.shape[:2], np.int32), np.zeros(lower.shape[:2], np.int32)
+        bases = [_basis(place, fewest) for place in self._places]
         fits = [
-            _least_distances(basis, moved, largest) for basis, moved in zip(bases, (upper, lower))
+            _least_distances(basis[judged], moved[:, judged], largest)
+            for basis, moved, judged in zip(bases, (upper, lower), self._judged)
         ]
         wrong: list[IntArray] = []
         for side, moved in enumerate((upper, lower)):
