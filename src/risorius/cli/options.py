@@ -15,8 +15,10 @@ __all__ = [
     "FlipLandmarks",
     "HeadArgument",
     "LandmarkFile",
+    "MandibleFile",
     "Method",
     "MethodOption",
+    "MuscleMapFile",
     "Parameters",
     "Parts",
     "Presets",
@@ -24,6 +26,8 @@ __all__ = [
     "ProfileOption",
     "Quiet",
     "Shapes",
+    "SkullFile",
+    "SkullLandmarks",
     "Unit",
     "Vectors",
     "as_parameters",
@@ -36,6 +40,7 @@ __all__ = [
 class Method(StrEnum):
     """Methods that pose a face."""
 
+    layered = "layered"
     vector = "vector"
 
 
@@ -168,6 +173,47 @@ Vectors = Annotated[
     ),
 ]
 
+MuscleMapFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--muscle-map",
+        metavar="FILE",
+        help="Muscles of the layered face, instead of those that ship with risorius.",
+        rich_help_panel=_METHOD,
+        show_default=False,
+    ),
+]
+SkullFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--skull",
+        metavar="FILE",
+        help="Skull of the layered face, instead of the built-in one: a mesh with the objects "
+        "cranium and mandible, or the cranium alone and --mandible.",
+        rich_help_panel=_METHOD,
+        show_default=False,
+    ),
+]
+MandibleFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--mandible",
+        metavar="FILE",
+        help="Mandible of --skull, if it is a file of its own.",
+        rich_help_panel=_METHOD,
+        show_default=False,
+    ),
+]
+SkullLandmarks = Annotated[
+    Path | None,
+    typer.Option(
+        "--skull-landmarks",
+        metavar="FILE",
+        help="Bone landmarks of --skull, named as in the muscle map.",
+        rich_help_panel=_METHOD,
+        show_default=False,
+    ),
+]
 Parameters = Annotated[
     list[str] | None,
     typer.Option(

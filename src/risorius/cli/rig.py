@@ -14,12 +14,16 @@ from risorius.cli.options import (
     FlipLandmarks,
     HeadArgument,
     LandmarkFile,
+    MandibleFile,
     MethodOption,
+    MuscleMapFile,
     Parts,
     Presets,
     ProfileOption,
     Quiet,
     Shapes,
+    SkullFile,
+    SkullLandmarks,
     Unit,
     Vectors,
     as_parts,
@@ -52,6 +56,10 @@ def rig(
     shapes: Shapes = None,
     presets: Presets = None,
     vectors: Vectors = None,
+    muscle_map: MuscleMapFile = None,
+    skull: SkullFile = None,
+    mandible: MandibleFile = None,
+    skull_landmarks: SkullLandmarks = None,
     sheet: Annotated[
         Path | None,
         typer.Option(metavar="PNG", help="Also draw all shapes on one page.", show_default=False),
@@ -98,6 +106,10 @@ def rig(
             shapes=shapes,
             presets=presets,
             vector_set=vectors,
+            muscle_map=muscle_map,
+            skull=skull,
+            mandible=mandible,
+            skull_landmarks=skull_landmarks,
         )
         baked = bake_head(resolve(head, given), talk)
         write_and_say(baked.rig, target, talk, animation=animation, metres=metres)

@@ -40,6 +40,10 @@ __all__ = [
     "with_head",
 ]
 
+_REPLACED = (
+    "landmarks", "unit", "axes", "method", "profile", "presets", "vector_set", "muscle_map",
+    "skull", "mandible", "skull_landmarks",
+)  # fmt: skip
 _RIG_ENDINGS = (".glb", ".gltf", ".npz")
 
 
@@ -58,6 +62,10 @@ class Given:
     shapes: str | None = None
     presets: Path | None = None
     vector_set: Path | None = None
+    muscle_map: Path | None = None
+    skull: Path | None = None
+    mandible: Path | None = None
+    skull_landmarks: Path | None = None
 
 
 def resolve(head: str, given: Given) -> Project:
@@ -85,9 +93,7 @@ def with_head(base: Project, head: str | None) -> Project:
 def with_given(base: Project, given: Given) -> Project:
     """Return `base` with everything replaced that was given."""
     changed: dict[str, Any] = {
-        name: getattr(given, name)
-        for name in ("landmarks", "unit", "axes", "method", "profile", "presets", "vector_set")
-        if getattr(given, name) is not None
+        name: getattr(given, name) for name in _REPLACED if getattr(given, name) is not None
     }
     if given.parts:
         changed["parts"] = {**base.parts, **given.parts}

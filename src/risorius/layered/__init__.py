@@ -1,1 +1,24 @@
 """The layered anatomical face: muscles in layers on a skull move the skin."""
+
+from risorius.layered.face import LayeredFace
+from risorius.layered.muscle_map import (
+    MuscleMap,
+    default_muscle_map,
+    parse_muscle_map,
+    read_muscle_map,
+)
+from risorius.layered.skull import Skull, builtin_skull, load_skull
+from risorius.layered.solve import Solved, solve_pose
+
+__all__ = [
+    "LayeredFace",
+    "MuscleMap",
+    "Skull",
+    "Solved",
+    "builtin_skull",
+    "default_muscle_map",
+    "load_skull",
+    "parse_muscle_map",
+    "read_muscle_map",
+    "solve_pose",
+]

@@ -50,6 +50,8 @@ class SheetAction:
         How far it spares the body of the lips: muscles of the mouth corner hold the modiolus.
     push : float
         Outward push at full contraction, negative inwards [mm].
+    bulge : float
+        The same at the origin only, fading towards the insertion [mm].
     seal : bool
         Whether the lips stay together under its pull.
     lip : {"upper", "lower"} or None
@@ -63,6 +65,7 @@ class SheetAction:
     arch: float = 0.0
     corner: float = 0.0
     push: float = 0.0
+    bulge: float = 0.0
     seal: bool = False
     lip: Lip | None = None
 

@@ -22,6 +22,9 @@ from risorius.layered.muscle import (
 __all__ = ["read_muscle"]
 
 _MOST_SHORTENING = 0.95
+_NUMBERS = (
+    "fixed_point", "stiffness", "reach", "tangential", "arch", "corner", "push", "bulge",
+)  # fmt: skip
 _SHARES = ("tangential", "arch", "corner", "fixed_point")
 
 
@@ -122,10 +125,7 @@ def _lip(word: str, where: str) -> Lip:
 
 def _sheet_action(record: Fields) -> SheetAction:
     plain = SheetAction()
-    numbers = {
-        key: record.number(key, default=getattr(plain, key))
-        for key in ("fixed_point", "stiffness", "reach", "tangential", "arch", "corner", "push")
-    }
+    numbers = {key: record.number(key, default=getattr(plain, key)) for key in _NUMBERS}
     for key in _SHARES:
         as_number(record.place(key), numbers[key], low=0.0, high=1.0)
     for key in ("stiffness", "reach"):
@@ -140,7 +140,7 @@ def _ring_action(record: Fields) -> MouthAction | EyeAction:
     if "mouth" in record:
         part = record.fields("mouth")
         plain = MouthAction(())
-        lips = tuple(_lip(word, part.place("lips")) for word in part.texts("lips"))
+        lips: tuple[Lip, ...] = tuple(_lip(word, part.place("lips")) for word in part.texts("lips"))
         if not lips:
             raise FormatError(f"{part.place('lips')}: name upper, lower or both")
         keys = ("narrow", "forward", "squeeze", "turn")

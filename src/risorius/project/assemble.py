@@ -17,6 +17,7 @@ from risorius.head.head import Head
 from risorius.io.bounded import read_json
 from risorius.landmarks.landmark_set import LandmarkSpec
 from risorius.mesh.polygon_mesh import PolygonMesh
+from risorius.project.layered import layered_face
 from risorius.project.project import Project
 from risorius.rig.face import Face
 from risorius.vectormuscle.face import Profile, VectorFace, VectorParameters
@@ -168,5 +169,5 @@ def _assets() -> Any:
 
 
 Builder = Callable[[Project, Head, Mechanics | None], Face]
-BUILDERS: dict[str, Builder] = {"vector": _vector_face}
+BUILDERS: dict[str, Builder] = {"layered": layered_face, "vector": _vector_face}
 """How each method of `METHODS` is bound to a head."""

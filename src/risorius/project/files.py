@@ -21,7 +21,10 @@ __all__ = ["SCHEMA", "UPGRADES", "VERSION", "read_project", "upgrade_project", "
 SCHEMA = "risorius/project"
 VERSION = 1
 _LIMIT = 4 * MEGABYTE
-_PATHS = ("head", "landmarks", "vector_set", "presets")
+_PATHS = (
+    "head", "landmarks", "vector_set", "muscle_map", "presets", "skull", "mandible",
+    "skull_landmarks",
+)  # fmt: skip
 _TEXTS = ("unit", "axes", "method", "profile")
 _OTHERS = ("parts", "flip_landmarks", "parameters", "shapes")
 
@@ -146,6 +149,10 @@ def _parse(document: Document, path: Path) -> Project:
             landmarks=_path(fields, "landmarks", path),
             vector_set=_path(fields, "vector_set", path),
             presets=_path(fields, "presets", path),
+            muscle_map=_path(fields, "muscle_map", path),
+            skull=_path(fields, "skull", path),
+            mandible=_path(fields, "mandible", path),
+            skull_landmarks=_path(fields, "skull_landmarks", path),
             unit=fields.text("unit") if "unit" in fields else None,
             axes=fields.text("axes") if "axes" in fields else None,
             method=fields.text("method", default=project.method),

@@ -16,7 +16,7 @@ __all__ = ["BUILTIN", "METHODS", "PROFILES", "Project"]
 BUILTIN = "builtin"
 """What stands for a path where the head that ships with risorius is meant."""
 
-METHODS = ("vector",)
+METHODS = ("layered", "vector")
 """Methods that pose a face."""
 
 PROFILES = ("improved", "faithful")
@@ -46,8 +46,10 @@ class Project:
         One of `PROFILES`.
     parameters : mapping of str to value
         Parameters of the method that differ from its profile.
-    vector_set, presets : Path or None
+    vector_set, muscle_map, presets : Path or None
         Recipes; None for those that ship with risorius.
+    skull, mandible, skull_landmarks : Path or None
+        A skull of one's own; the mandible where it has a file of its own.
     shapes : tuple of str
         Sets of shapes to bake.
 
@@ -67,7 +69,11 @@ class Project:
     profile: str = "improved"
     parameters: Mapping[str, float | str] = field(default_factory=dict[str, float | str])
     vector_set: Path | None = None
+    muscle_map: Path | None = None
     presets: Path | None = None
+    skull: Path | None = None
+    mandible: Path | None = None
+    skull_landmarks: Path | None = None
     shapes: tuple[str, ...] = SHAPE_SETS
 
     def __post_init__(self) -> None:

@@ -1,0 +1,197 @@
+"""Contact of the posed skin with teeth, eyeballs and of the lips with each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from risorius._check import FloatArray, IntArray
+from risorius.anatomy.jaw import JawPose
+from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.radial_surface import RadialSurface
+from risorius.head.head import Head
+from risorius.layered.lip_contact import LipContact
+from risorius.layered.outwards import unit
+from risorius.layered.skin import Skin
+from risorius.spatial.hull import convex_hull
+
+__all__ = ["Contact"]
+
+# Skin that was farther from the teeth keeps at least this distance [mm].
+_CLEAR = 0.3
+# Skin within this distance of the mouth's middle may meet teeth [mm].
+_REACH = 55.0
+_ROUNDS, _PASSES, _GAIN = 4, 8, 1.3
+_DEEPEST = 8.0
+# Planes that face backwards more than this push nothing.
+_BACK = -0.2
+_EYE_CLEAR = 0.15
+# Gums this near to teeth support the lips as well [mm].
+_GUMS = 6.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Arch:
+    """One convex hull of teeth and the skin that may meet it."""
+
+    planes: FloatArray
+    offsets: FloatArray
+    push: FloatArray
+    least: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+    def shortfall(self, points: FloatArray) -> FloatArray:
+        """Return how far (q, 3) points must move to be clear of the hull."""
+        result = np.zeros_like(points)
+        near = np.flatnonzero(((points > self.low) & (points < self.high)).all(axis=1))
+        if not len(near):
+            return result
+        height = points[near] @ self.planes.T - self.offsets
+        plane = height.argmax(axis=1)
+        highest = height[np.arange(len(near)), plane]
+        missing = np.clip(self.least[near] - highest, 0.0, _DEEPEST)
+        result[near] = missing[:, None] * self.push[plane]
+        return result
+
+
+@dataclass(frozen=True, eq=False)
+class _Eye:
+    vertices: IntArray
+    centre: FloatArray
+    surface: RadialSurface
+    least: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """What the posed skin may not run into, bound to one head."""
+
+    skin: Skin
+    mechanics: Mechanics
+    vertices: IntArray
+    arches: Mapping[str, _Arch]
+    eyes: tuple[_Eye, ...]
+    lips: LipContact
+
+    @staticmethod
+    def build(skin: Skin, mechanics: Mechanics) -> Contact:
+        """Bind the teeth, eyeballs and lips of one head."""
+        middle = skin.mouth.line[np.argmin(np.abs(skin.mouth.place))]
+        near = np.linalg.norm(skin.positions - middle, axis=1) < _REACH * skin.scale
+        shown = ~skin.hidden | (mechanics.lips.inside & (mechanics.lips.distance < 8.0))
+        vertices = np.flatnonzero(near & shown & (skin.mass > 1e-9)).astype(np.int32)
+        arches = {
+            kind: _arch(_teeth_and_gums(mechanics.head, kind), skin.positions[vertices])
+            for kind in ("teeth_upper", "teeth_lower")
+            if kind in mechanics.head.parts
+        }
+        eyes = tuple(
+            _eye(skin, lids.centre, lids.surface)
+            for lids in mechanics.lids.values()
+            if lids.surface is not None
+        )
+        return Contact(
+            skin, mechanics, vertices, arches, eyes, LipContact.build(skin, mechanics.lips)
+        )
+
+    def resolve(self, moved: FloatArray, values: Mapping[str, float]) -> FloatArray:
+        """Return the displacement (n, 3) [mm] of the skin without what ran into something.
+
+        Parameters
+        ----------
+        moved : (n, 3) float64
+            Displacement of the posed skin [mm].
+        values : mapping of str to float
+            Resolved controls; the jaw's carry the lower teeth.
+        """
+        moved = self.lips.part(moved)
+        for kind, arch in self.arches.items():
+            jaw = self._jaw(values) if kind == "teeth_lower" else None
+            moved = self._clear_teeth(moved, arch, jaw)
+        for eye in self.eyes:
+            moved = self._clear_eye(moved, eye)
+        return moved
+
+    def _jaw(self, values: Mapping[str, float]) -> tuple[FloatArray, FloatArray] | None:
+        """Return rotation (3, 3) and shift (3,) of the jaw, None at rest."""
+        pose = JawPose(
+            values.get("jaw_pitch", 0.0),
+            values.get("jaw_yaw", 0.0),
+            values.get("jaw_protrusion", 0.0),
+        )
+        if pose.at_rest:
+            return None
+        frame = self.mechanics.jaw.move(np.vstack([np.zeros(3), np.eye(3)]), pose)
+        return (frame[1:] - frame[0]).T, frame[0]
+
+    def _clear_teeth(
+        self, moved: FloatArray, arch: _Arch, jaw: tuple[FloatArray, FloatArray] | None
+    ) -> FloatArray:
+        rest = self.skin.positions[self.vertices]
+        for number in range(_ROUNDS):
+            points = rest + moved[self.vertices]
+            if jaw is not None:
+                points = (points - jaw[1]) @ jaw[0]
+            push = arch.shortfall(points)
+            if not push.any():
+                break
+            if jaw is not None:
+                push = push @ jaw[0].T
+            field = np.zeros_like(moved)
+            field[self.vertices] = push
+            if number < _ROUNDS - 1:
+                # The skin around gives way too, so that no single vertex sticks out.
+                field = _GAIN * self.skin.smoothed(field, _PASSES)
+            moved = moved + field
+        return moved
+
+    def _clear_eye(self, moved: FloatArray, eye: _Eye) -> FloatArray:
+        travel = moved[eye.vertices]
+        if not travel.any():
+            return moved
+        arm = self.skin.positions[eye.vertices] + travel - eye.centre
+        distance = np.linalg.norm(arm, axis=1)
+        lift = np.maximum(eye.surface.radius(arm) + eye.least - distance, 0.0)
+        lift[~travel.any(axis=1)] = 0.0
+        if not lift.any():
+            return moved
+        moved = moved.copy()
+        moved[eye.vertices] += arm * (lift / np.maximum(distance, 1e-9))[:, None]
+        return moved
+
+
+def _teeth_and_gums(head: Head, kind: str) -> FloatArray:
+    """Return the teeth of one arch and the gums beside them (k, 3)."""
+    teeth = head.parts[kind].mesh.positions
+    gums = head.part("gums")
+    if gums is None:
+        return teeth
+    distance = cKDTree(teeth).query(gums.mesh.positions)[0]
+    return np.concatenate([teeth, gums.mesh.positions[np.asarray(distance) < _GUMS]])
+
+
+def _arch(teeth: FloatArray, rest: FloatArray) -> _Arch:
+    hull = convex_hull(teeth)
+    # Flat faces of the hull are split into triangles: one plane of each is enough.
+    _, first = np.unique(
+        np.column_stack([hull.plane_normals, hull.plane_offsets]).round(3),
+        axis=0,
+        return_index=True,
+    )
+    planes, offsets = hull.plane_normals[first], hull.plane_offsets[first]
+    push = unit(planes * [1.0, 0.0, 1.0]) * (planes[:, 2:] > _BACK)
+    height = (rest @ planes.T - offsets).max(axis=1)
+    low, high = teeth.min(axis=0) - _CLEAR, teeth.max(axis=0) + _CLEAR
+    return _Arch(planes, offsets, push, np.minimum(height, _CLEAR), low, high)
+
+
+def _eye(skin: Skin, centre: FloatArray, surface: RadialSurface) -> _Eye:
+    arm = skin.positions - centre
+    gap = np.linalg.norm(arm, axis=1) - surface.radius(arm)
+    near = (gap < 8.0 * skin.scale) & (arm[:, 2] > 0.0) & ~skin.hidden
+    vertices = np.flatnonzero(near).astype(np.int32)
+    return _Eye(vertices, centre, surface, np.minimum(gap[vertices], _EYE_CLEAR))

@@ -1,0 +1,161 @@
+"""The layered anatomical face: muscles on a fitted skull, a linear field each, correctives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from risorius._check import FloatArray
+from risorius.anatomy.mechanics import Mechanics
+from risorius.controls.control import Control, Pose, resolve_pose
+from risorius.controls.standard import MUSCLES, SINGLE_MUSCLES, muscle_controls
+from risorius.head.head import Head
+from risorius.layered.binding import bind_muscles
+from risorius.layered.contact import Contact
+from risorius.layered.correctives import Correctives
+from risorius.layered.fibres import lay_fibres
+from risorius.layered.muscle_map import MuscleMap, default_muscle_map
+from risorius.layered.pulls import Pull
+from risorius.layered.skin import Skin, build_skin, mirror_partners
+from risorius.layered.skull import Skull, builtin_skull
+from risorius.layered.skull_fit import FittedSkull, fit_skull
+
+__all__ = ["LayeredFace"]
+
+
+@dataclass(frozen=True, eq=False)
+class LayeredFace:
+    """Muscles in layers bound to a head (`risorius.rig.Face`).
+
+    Parameters
+    ----------
+    head : Head
+    muscle_map : MuscleMap
+    mechanics : Mechanics
+    skull : FittedSkull
+        The skull inside the head.
+    skin : Skin
+    fibres : mapping of str to (h, w, 3) float64
+        Fibres at rest of every sheet muscle, by control [mm].
+    pulls : mapping of str to Pull
+        What every muscle wants of the skin, by control.
+    fields : mapping of str to (n, 3) float64
+        Displacement of the welded skin at full contraction, by control [mm].
+    correctives : Correctives
+    contact : Contact
+    controls : tuple of Control
+    """
+
+    head: Head
+    muscle_map: MuscleMap
+    mechanics: Mechanics
+    skull: FittedSkull
+    skin: Skin
+    fibres: Mapping[str, FloatArray]
+    pulls: Mapping[str, Pull]
+    fields: Mapping[str, FloatArray]
+    correctives: Correctives
+    contact: Contact
+    controls: tuple[Control, ...]
+
+    @staticmethod
+    def build(
+        head: Head,
+        muscle_map: MuscleMap | None = None,
+        *,
+        skull: Skull | None = None,
+        mechanics: Mechanics | None = None,
+    ) -> LayeredFace:
+        """Fit skull and muscles to a head and solve the field of every muscle.
+
+        Parameters
+        ----------
+        head : Head
+        muscle_map : MuscleMap, optional
+            The default map if left out.
+        skull : Skull, optional
+            The built-in skull if left out.
+        mechanics : Mechanics, optional
+            Already built for this head.
+
+        Raises
+        ------
+        LandmarkError
+            If the head lacks the landmarks of mouth, eyes and chin.
+        MeshError
+            If the lips are welded.
+        """
+        drawn = muscle_map or default_muscle_map()
+        bones = skull or builtin_skull()
+        moving = mechanics or Mechanics.build(head)
+        partner = mirror_partners(head.skin.mesh)
+        hidden = moving.lips.inside.copy()
+        for margins in moving.margins.values():
+            hidden |= margins.slit.inside
+        fitted = fit_skull(bones, head, symmetric=partner is not None, hidden=hidden)
+        skin = build_skin(moving, fitted, partner)
+        binding = bind_muscles(drawn, lay_fibres(drawn, bones), fitted, skin, moving)
+        controls = _controls(tuple(binding.fields)) + moving.controls
+        correctives = Correctives.build(skin, moving)
+        return LayeredFace(
+            head, drawn, moving, fitted, skin, binding.fibres, binding.pulls, binding.fields,
+            correctives, Contact.build(skin, moving), controls,
+        )  # fmt: skip
+
+    def linear_skin(self, values: Mapping[str, float]) -> FloatArray:
+        """Return the sum (w, 3) [mm] of the unit fields at `values`."""
+        total = np.zeros_like(self.skin.positions)
+        # In the order of the fields, so that the order of the values does not matter.
+        for name, field in self.fields.items():
+            amount = values.get(name, 0.0)
+            if amount:
+                total += amount * field
+        return total
+
+    def displace_skin(self, values: Mapping[str, float]) -> FloatArray:
+        """Return the displacement (w, 3) [mm] of the welded skin by muscles alone."""
+        if not any(values.get(name, 0.0) for name in self.fields):
+            return np.zeros_like(self.skin.positions)
+        return self.correctives.shape(self.linear_skin(values))
+
+    def displace(self, pose: Pose) -> FloatArray:
+        """Return the displacement (n, 3) [mm, canonical frame] of every input vertex.
+
+        Raises
+        ------
+        ParameterError
+            If a control is unknown or not finite.
+        """
+        values = resolve_pose(self.controls, pose).values
+        result = self.mechanics.pose(self.displace_skin(values), values)
+        if not any(values.values()):
+            return result
+        part = self.head.skin
+        moved = result[part.first_source()]
+        part.spread(self.contact.resolve(moved, values), result)
+        return result
+
+    def pose(self, pose: Pose) -> FloatArray:
+        """Return the posed positions (n, 3) [mm, canonical frame] of every input vertex."""
+        return self.head.positions + self.displace(pose)
+
+
+def _controls(names: tuple[str, ...]) -> tuple[Control, ...]:
+    """Return controls for the muscles of a map: registered ones first, in registry order."""
+    known = [
+        control
+        for base in (*MUSCLES, *SINGLE_MUSCLES)
+        for control in muscle_controls(base)
+        if control.name in names
+    ]
+    listed = {control.name for control in known}
+    own: list[Control] = []
+    for name in names:
+        if name in listed:
+            continue
+        other = name[:-2] + {"_l": "_r", "_r": "_l"}.get(name[-2:], name[-2:])
+        mirror = other if other in names else name
+        own.append(Control(name, 0.0, 1.0, 0.0, "1", "muscle", mirror))
+    return tuple(known + own)

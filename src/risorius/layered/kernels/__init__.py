@@ -1,0 +1,1 @@
+"""Compiled loops of the layered face; plain arrays in and out."""

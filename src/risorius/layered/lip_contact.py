@@ -1,0 +1,94 @@
+"""Lips do not pass through each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from risorius._check import FloatArray, IntArray
+from risorius.anatomy.smooth_step import smooth_step
+from risorius.layered.skin import Skin
+from risorius.mesh.lips import LipSides
+
+__all__ = ["LipContact"]
+
+# Lip tissue within this distance of the contact line gives way [mm].
+_SOFT = 9.0
+# Stations along the mouth, and how far apart in depth lips may be and still meet [mm].
+_STATIONS = 41
+_PASSING = 5.0
+_BLUR = np.array([0.25, 0.5, 0.25])
+
+
+@dataclass(frozen=True, eq=False)
+class LipContact:
+    """The two contact lines and the tissue that parts with them.
+
+    Parameters
+    ----------
+    upper, lower : (k,) int32
+        Vertices of the lines.
+    rest : (n, 3) float64
+        Skin at rest [mm].
+    gap : (stations,) float64
+        Height of the upper over the lower line at rest, at most 0 [mm].
+    station : (n,) float64
+        Place of each vertex along the mouth, in stations.
+    share : (n,) float64
+        How far a vertex gives way: positive above the line, negative below.
+    """
+
+    upper: IntArray
+    lower: IntArray
+    rest: FloatArray
+    places: FloatArray
+    gap: FloatArray
+    share: FloatArray
+    station: FloatArray
+
+    @staticmethod
+    def build(skin: Skin, lips: LipSides) -> LipContact:
+        """Bind the lips of a skin."""
+        soft = smooth_step(1.0 - lips.distance / (_SOFT * skin.scale))
+        soft = np.where(np.isfinite(lips.distance), soft, 0.0)
+        sign = np.sign(np.nan_to_num(lips.to_lower - lips.to_upper))
+        ends = 1.0 - smooth_step((np.abs(skin.mouth.place) - 0.8) / 0.2)
+        share = soft * sign * ends
+        half = skin.mouth.half_width
+        places = half * np.linspace(-1.0, 1.0, _STATIONS)
+        blank = np.zeros(_STATIONS)
+        station = np.clip(skin.positions[:, 0], -half, half)
+        lip = LipContact(
+            lips.slit.upper, lips.slit.lower, skin.positions, places, blank, share, station
+        )
+        height, _ = lip._gap(np.zeros_like(skin.positions))
+        return LipContact(
+            lip.upper, lip.lower, lip.rest, places, np.minimum(height, 0.0), share, station
+        )
+
+    def part(self, moved: FloatArray) -> FloatArray:
+        """Return the displacement (n, 3) with crossing lips pushed apart by equal shares."""
+        height, apart = self._gap(moved)
+        missing = np.maximum(self.gap - height, 0.0) * (np.abs(apart) < _PASSING)
+        if missing.max() <= 1e-3:
+            return moved
+        for _ in range(2):
+            missing = np.maximum(missing, np.convolve(missing, _BLUR, mode="same"))
+        lift = 0.5 * self.share * np.interp(self.station, self.places, missing)
+        result = moved.copy()
+        result[:, 1] += lift
+        return result
+
+    def _gap(self, moved: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return height and depth (stations,) of the upper line over the lower one."""
+        rows: list[FloatArray] = []
+        for line in (self.upper, self.lower):
+            points = self.rest[line] + moved[line]
+            order = np.argsort(self.rest[line, 0], kind="stable")
+            x = self.rest[line, 0][order]
+            rows.append(
+                np.stack([np.interp(self.places, x, points[order, axis]) for axis in (1, 2)])
+            )
+        apart = rows[0] - rows[1]
+        return apart[0], apart[1]

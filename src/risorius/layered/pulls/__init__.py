@@ -1,0 +1,8 @@
+"""What each kind of muscle wants of the skin: a place to go and a strength to hold it there."""
+
+from risorius.layered.pulls.eye import eye_pull
+from risorius.layered.pulls.mouth import mouth_pull
+from risorius.layered.pulls.pull import Pull
+from risorius.layered.pulls.sheet import near_skin, sheet_pull
+
+__all__ = ["Pull", "eye_pull", "mouth_pull", "near_skin", "sheet_pull"]
