@@ -18,7 +18,7 @@ from risorius.mesh.slit import line_lengths
 __all__ = ["jaw_share_inside", "jaw_share_of_skin"]
 
 # Ends of the lip lines over which lower and upper lip fade into the commissure.
-_FADE = 0.3
+_FADE = 0.2
 
 
 @dataclass(frozen=True, eq=False)

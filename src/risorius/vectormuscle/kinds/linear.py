@@ -12,6 +12,7 @@ import numpy as np
 from risorius._check import FloatArray, IntArray, as_number
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.errors import ParameterError, RisoriusWarning
+from risorius.mesh.laplacian import smooth
 from risorius.vectormuscle.kinds.fields import read_regions
 from risorius.vectormuscle.muscle import (
     MIRROR,
@@ -147,11 +148,12 @@ class LinearMuscle:
     def _effect(self, context: FaceContext) -> FloatArray:
         """Return the effect (n,) on the skin of a face, where it is permitted."""
         effect = self.influence(context.positions, smooth=context.angular == "smooth")
-        if self.regions:
-            effect = effect * context.regions.permission(self.regions)
         if self.corner:
             effect = effect * (1.0 - self.corner * _lip_body(context))
-        return effect * context.regions.mobility
+        effect = effect * context.regions.mobility
+        if self.corner:
+            effect = np.where(effect > 0.0, _calm_corner(effect, context), 0.0)
+        return effect * context.regions.permission(self.regions) if self.regions else effect
 
     def wrinkle_zone(self, context: FaceContext) -> WrinkleZone:
         """Return where the skin is compressed: between the origin and the start radius."""
@@ -242,6 +244,17 @@ def _lip_body(context: FaceContext) -> FloatArray:
     beside = np.abs(context.positions[:, 0] - middle) / half
     near = smooth_step(1.0 - (lips.distance - 0.25 * lips.width) / (0.5 * lips.width))
     return near * smooth_step((1.0 - beside) / 0.7)
+
+
+def _calm_corner(effect: FloatArray, context: FaceContext) -> FloatArray:
+    """Return the effect (n,) averaged with its neighbours in the mouth corner.
+
+    Lining and skin meet there in small triangles, which would fold where one lags.
+    """
+    lips = context.mechanics.lips
+    near = smooth_step(1.0 - lips.to_corner / (0.4 * lips.width))
+    calm = smooth(effect, context.mechanics.head.skin.mesh.faces, 10)
+    return effect + near * (calm - effect)
 
 
 def _warn(message: str) -> None:

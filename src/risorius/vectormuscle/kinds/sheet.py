@@ -27,7 +27,7 @@ __all__ = ["SheetMuscle"]
 
 
 # Share of the half width over which a sheet pulls with full strength.
-_PLATEAU = 0.35
+_PLATEAU = 0.45
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +120,8 @@ class SheetMuscle:
         across = np.cross(self.axis, np.array([0.0, 0.0, 1.0]))
         across /= np.linalg.norm(across)
         aside = np.abs(offset @ across) / self.half_width
-        effect = np.where(aside < 1.0, np.cos(0.5 * np.pi * aside) ** 2, 0.0)
+        # Full over the inner part, so that neighbouring sheets join without a dip.
+        effect = smooth_step((1.0 - aside) / (1.0 - _PLATEAU))
         if self.regions:
             effect = effect * context.regions.permission(self.regions)
         effect = effect * context.regions.mobility
