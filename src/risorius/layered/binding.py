@@ -9,7 +9,15 @@ from risorius._check import FloatArray
 from risorius.anatomy.mechanics import Mechanics
 from risorius.layered.muscle import EyeAction, MouthAction, Muscle, SheetAction
 from risorius.layered.muscle_map import MuscleMap
-from risorius.layered.pulls import Pull, eye_pull, mouth_pull, near_skin, sheet_pull
+from risorius.layered.pulls import (
+    Pull,
+    eye_pull,
+    lower_lid_pull,
+    mouth_pull,
+    near_skin,
+    sheet_pull,
+    upper_lid_pull,
+)
 from risorius.layered.skin import Skin
 from risorius.layered.skull_fit import MIRROR, FittedSkull
 from risorius.layered.unit_fields import FieldSolver
@@ -31,11 +39,14 @@ class Binding:
         By control.
     fields : mapping of str to (n, 3) float64
         Displacement at full contraction, by control [mm].
+    companions : mapping of str to (n, 3) float64
+        What a device takes along where its control is above 0, by control [mm].
     """
 
     fibres: dict[str, FloatArray] = field(default_factory=dict[str, FloatArray])
     pulls: dict[str, Pull] = field(default_factory=dict[str, Pull])
     fields: dict[str, FloatArray] = field(default_factory=dict[str, FloatArray])
+    companions: dict[str, FloatArray] = field(default_factory=dict[str, FloatArray])
 
     def put(self, control: str, pull: Pull, motion: FloatArray) -> None:
         """Store a pull and its field (n, 3); halves that share a control add up."""
@@ -87,7 +98,20 @@ def bind_muscles(
                 continue
             pull = _pull(muscle, binding.fibres.get(name), skin, mechanics, corners)
             binding.put(control, pull, solver.solve(pull))
+    _bind_lids(binding, solver, skin, mechanics)
     return binding
+
+
+def _bind_lids(binding: Binding, solver: FieldSolver, skin: Skin, mechanics: Mechanics) -> None:
+    """Add what closing lids take along."""
+    for side, margins in mechanics.margins.items():
+        for control, pull in (("lid_lower", lower_lid_pull), ("lid_upper", upper_lid_pull)):
+            left = f"{control}_l"
+            if side == "r" and skin.partner is not None and left in binding.companions:
+                field = skin.mirrored(binding.companions[left])
+            else:
+                field = solver.solve(pull(skin, margins))
+            binding.companions[f"{control}_{side}"] = field
 
 
 def _pull(

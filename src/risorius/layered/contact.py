@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_matrix
 from scipy.spatial import cKDTree
 
-from risorius._check import FloatArray, IntArray
+from risorius._check import BoolArray, FloatArray, IntArray
+from risorius.anatomy.eyes import Eyeball
 from risorius.anatomy.jaw import JawPose
 from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.radial_surface import RadialSurface
@@ -26,6 +28,8 @@ _CLEAR = 0.3
 _REACH = 55.0
 _ROUNDS, _PASSES, _GAIN = 4, 8, 1.3
 _DEEPEST = 8.0
+# What is left of a penetration is taken away vertex by vertex [mm].
+_SLIGHT = 0.05
 # Planes that face backwards more than this push nothing.
 _BACK = -0.2
 _EYE_CLEAR = 0.15
@@ -60,6 +64,7 @@ class _Arch:
 
 @dataclass(frozen=True, eq=False)
 class _Eye:
+    side: str
     vertices: IntArray
     centre: FloatArray
     surface: RadialSurface
@@ -73,6 +78,8 @@ class Contact:
     skin: Skin
     mechanics: Mechanics
     vertices: IntArray
+    average: csr_matrix
+    shown: BoolArray
     arches: Mapping[str, _Arch]
     eyes: tuple[_Eye, ...]
     lips: LipContact
@@ -83,19 +90,26 @@ class Contact:
         middle = skin.mouth.line[np.argmin(np.abs(skin.mouth.place))]
         near = np.linalg.norm(skin.positions - middle, axis=1) < _REACH * skin.scale
         shown = ~skin.hidden | (mechanics.lips.inside & (mechanics.lips.distance < 8.0))
-        vertices = np.flatnonzero(near & shown & (skin.mass > 1e-9)).astype(np.int32)
+        vertices = np.flatnonzero(near & (skin.mass > 1e-9)).astype(np.int32)
         arches = {
             kind: _arch(_teeth_and_gums(mechanics.head, kind), skin.positions[vertices])
             for kind in ("teeth_upper", "teeth_lower")
             if kind in mechanics.head.parts
         }
         eyes = tuple(
-            _eye(skin, lids.centre, lids.surface)
-            for lids in mechanics.lids.values()
+            _eye(side, skin, lids.centre, lids.surface)
+            for side, lids in mechanics.lids.items()
             if lids.surface is not None
         )
         return Contact(
-            skin, mechanics, vertices, arches, eyes, LipContact.build(skin, mechanics.lips)
+            skin,
+            mechanics,
+            vertices,
+            csr_matrix(skin.average[vertices][:, vertices]),
+            shown[vertices],
+            arches,
+            eyes,
+            LipContact.build(skin, mechanics.lips),
         )
 
     def resolve(self, moved: FloatArray, values: Mapping[str, float]) -> FloatArray:
@@ -113,7 +127,9 @@ class Contact:
             jaw = self._jaw(values) if kind == "teeth_lower" else None
             moved = self._clear_teeth(moved, arch, jaw)
         for eye in self.eyes:
-            moved = self._clear_eye(moved, eye)
+            yaw = values.get(f"gaze_yaw_{eye.side}", 0.0)
+            pitch = values.get(f"gaze_pitch_{eye.side}", 0.0)
+            moved = self._clear_eye(moved, eye, yaw=yaw, pitch=pitch)
         return moved
 
     def _jaw(self, values: Mapping[str, float]) -> tuple[FloatArray, FloatArray] | None:
@@ -136,27 +152,38 @@ class Contact:
             points = rest + moved[self.vertices]
             if jaw is not None:
                 points = (points - jaw[1]) @ jaw[0]
-            push = arch.shortfall(points)
-            if not push.any():
+            push = arch.shortfall(points) * self.shown[:, None]
+            deepest = float(np.abs(push).max(initial=0.0))
+            if deepest == 0.0:
                 break
             if jaw is not None:
                 push = push @ jaw[0].T
-            field = np.zeros_like(moved)
-            field[self.vertices] = push
-            if number < _ROUNDS - 1:
+            last = number == _ROUNDS - 1 or deepest < _SLIGHT
+            if not last:
                 # The skin around gives way too, so that no single vertex sticks out.
-                field = _GAIN * self.skin.smoothed(field, _PASSES)
-            moved = moved + field
+                for _ in range(_PASSES):
+                    push = self.average @ push
+                push = _GAIN * push
+            moved = moved.copy()
+            moved[self.vertices] += push
+            if last:
+                break
         return moved
 
-    def _clear_eye(self, moved: FloatArray, eye: _Eye) -> FloatArray:
+    def _clear_eye(self, moved: FloatArray, eye: _Eye, *, yaw: float, pitch: float) -> FloatArray:
+        """Lift lids off the eyeball; the cornea of a turned eye raises them."""
         travel = moved[eye.vertices]
-        if not travel.any():
+        turned = yaw != 0.0 or pitch != 0.0
+        if not turned and not travel.any():
             return moved
         arm = self.skin.positions[eye.vertices] + travel - eye.centre
         distance = np.linalg.norm(arm, axis=1)
-        lift = np.maximum(eye.surface.radius(arm) + eye.least - distance, 0.0)
-        lift[~travel.any(axis=1)] = 0.0
+        ball = Eyeball(np.zeros(3), 1.0, True)
+        # Where the vertex meets the eyeball as it was tabulated: turn back, last turn first.
+        looked = ball.turn(ball.turn(arm, yaw=-yaw, pitch=0.0), yaw=0.0, pitch=-pitch)
+        lift = np.maximum(eye.surface.radius(looked) + eye.least - distance, 0.0)
+        if not turned:
+            lift[~travel.any(axis=1)] = 0.0
         if not lift.any():
             return moved
         moved = moved.copy()
@@ -189,9 +216,9 @@ def _arch(teeth: FloatArray, rest: FloatArray) -> _Arch:
     return _Arch(planes, offsets, push, np.minimum(height, _CLEAR), low, high)
 
 
-def _eye(skin: Skin, centre: FloatArray, surface: RadialSurface) -> _Eye:
+def _eye(side: str, skin: Skin, centre: FloatArray, surface: RadialSurface) -> _Eye:
     arm = skin.positions - centre
     gap = np.linalg.norm(arm, axis=1) - surface.radius(arm)
     near = (gap < 8.0 * skin.scale) & (arm[:, 2] > 0.0) & ~skin.hidden
     vertices = np.flatnonzero(near).astype(np.int32)
-    return _Eye(vertices, centre, surface, np.minimum(gap[vertices], _EYE_CLEAR))
+    return _Eye(side, vertices, centre, surface, np.minimum(gap[vertices], _EYE_CLEAR))

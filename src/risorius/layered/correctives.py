@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix, diags
+from scipy.sparse import coo_matrix, csc_matrix, csr_matrix, diags
 
 from risorius._check import FloatArray, IntArray
 from risorius.anatomy.mechanics import Mechanics
@@ -15,14 +15,13 @@ from risorius.layered.outwards import unit
 from risorius.layered.skin import Skin
 from risorius.layered.tissue import swelling_depth
 from risorius.mesh.factorisation import factorise
-from risorius.mesh.normals import vertex_normals
 
 __all__ = ["Correctives"]
 
 _LENGTH = 5.0
 _HOLD_LIDS, _HOLD_STILL = 4.0, 50.0
 _ROUNDS = 2
-_AREA_PASSES, _NORMAL_PASSES, _SWELL_PASSES = 6, 6, 3
+_PASSES, _SWELL_PASSES = 6, 3
 _MOST_IN, _MOST_OUT = -3.0, 7.0
 
 
@@ -35,6 +34,8 @@ class Correctives:
     skin : Skin
     active : (m,) int32
         Vertices that may move; what follows is numbered among them.
+    rest : (m, 3) float64
+        Their places at rest [mm].
     starts, columns : (m + 1,) and (e,) int32
         Neighbours of each.
     edge_weight : (e,) float64
@@ -43,19 +44,29 @@ class Correctives:
         How strongly each follows the linear field.
     solve : callable
         Solves ``hold u + length^2 L u = right`` for (m, 3) right sides.
-    depth : (n,) float64
-        Thickness of swelling tissue [built-in mm].
-    area : (n,) float64
+    faces : (f, 3) int32
+        Faces between active vertices.
+    around : (m, f) csr_matrix
+        Sums over the faces of each vertex.
+    average : (m, m) csr_matrix
+        `Skin.average` among active vertices.
+    depth : (m,) float64
+        Thickness of swelling tissue [mm], faded where skin does not move.
+    area : (m,) float64
         Smoothed vertex areas at rest [mm^2].
     """
 
     skin: Skin
     active: IntArray
+    rest: FloatArray
     starts: IntArray
     columns: IntArray
     edge_weight: FloatArray
     hold: FloatArray
     solve: Callable[[FloatArray], FloatArray]
+    faces: IntArray
+    around: csr_matrix
+    average: csr_matrix
     depth: FloatArray
     area: FloatArray
 
@@ -68,55 +79,76 @@ class Correctives:
         hold = 1.0 + _HOLD_LIDS * skin.lids + _HOLD_STILL * (1.0 - skin.mobility)
         hold = skin.mass[active] * hold[active]
         matrix = csc_matrix(diags(hold) + length**2 * stiff)
-        edges = stiff - diags(stiff.diagonal())
+        edges = csr_matrix(stiff - diags(stiff.diagonal()))
         edges.eliminate_zeros()
-        edges = csr_matrix(edges)
-        area = _areas(skin, skin.positions)
+        faces = _faces_between(skin, active)
+        entries = (np.ones(faces.size), (faces.ravel(), np.repeat(np.arange(len(faces)), 3)))
+        around = csr_matrix(coo_matrix(entries, shape=(len(active), len(faces))))
+        average = csr_matrix(skin.average[active][:, active])
+        depth = (swelling_depth(skin, mechanics) * skin.mobility * skin.scale)[active]
+        rest = np.ascontiguousarray(skin.positions[active])
+        area = around @ np.linalg.norm(_crosses(rest, faces), axis=1)
+        for _ in range(_PASSES):
+            area = average @ area
         return Correctives(
-            skin, active, edges.indptr.astype(np.int32), edges.indices.astype(np.int32),
-            -(length**2) * edges.data, hold, factorise(matrix),
-            swelling_depth(skin, mechanics), skin.smoothed(area, _AREA_PASSES),
+            skin, active, rest, edges.indptr.astype(np.int32), edges.indices.astype(np.int32),
+            -(length**2) * edges.data, hold, factorise(matrix), faces, around, average, depth,
+            area,
         )  # fmt: skip
 
     def shape(self, linear: FloatArray) -> FloatArray:
         """Return the displacement (n, 3) [mm] that the linear one (n, 3) stands for."""
-        skin = self.skin
-        moved = self._turned(linear)
-        return moved + self._swelling(skin.positions + moved)
+        turned = self._turned(np.ascontiguousarray(linear[self.active]))
+        field = linear.copy()
+        field[self.active] = turned + self._swelling(self.rest + turned)
+        return field
 
-    def _turned(self, linear: FloatArray) -> FloatArray:
+    def _turned(self, start: FloatArray) -> FloatArray:
         """Turn the skin locally instead of shearing it.
 
         Minimises ``sum m h |u - u_lin|^2 + l^2 sum w |(p_i - p_j) - R_i (v_i - v_j)|^2``, with R
         the best rotation of each vertex's edges.
         """
-        start = linear[self.active]
-        rest = self.skin.positions[self.active]
         result = start
         turns = np.zeros((len(start), 3, 3))
         forces = np.zeros_like(start)
-        edges = (self.starts, self.columns, self.edge_weight, rest)
+        edges = (self.starts, self.columns, self.edge_weight, self.rest)
         for _ in range(_ROUNDS):
             best_turns(*edges, result, turns)
             turn_forces(*edges, turns, forces)
             result = self.solve(self.hold[:, None] * start + forces)
-        field = linear.copy()
-        field[self.active] = result
-        return field
+        return result
 
     def _swelling(self, positions: FloatArray) -> FloatArray:
-        """Return how tissue that keeps its volume moves out where its area shrinks (n, 3)."""
-        skin = self.skin
-        ratio = skin.smoothed(_areas(skin, positions), _AREA_PASSES) / np.maximum(self.area, 1e-9)
-        ratio = np.where(self.area > 1e-9, np.clip(ratio, 0.5, 1.6), 1.0)
-        out = np.clip(self.depth * (1.0 / ratio - 1.0), _MOST_IN, _MOST_OUT) * skin.scale
-        out = skin.smoothed(out, _SWELL_PASSES) * skin.mobility
-        normals = skin.smoothed(vertex_normals(positions, skin.mesh.faces), _NORMAL_PASSES)
-        return out[:, None] * unit(normals)
+        """Return how tissue that keeps its volume moves out where its area shrinks (m, 3)."""
+        cross = _crosses(positions, self.faces)
+        size = np.sqrt((cross * cross).sum(axis=1))
+        sums = self.around @ np.column_stack([cross, size])
+        for _ in range(_PASSES):
+            sums = self.average @ sums
+        ratio = np.clip(sums[:, 3] / np.maximum(self.area, 1e-9), 0.5, 1.6)
+        ratio[self.area <= 1e-9] = 1.0
+        scale = self.skin.scale
+        out = np.clip(self.depth * (1.0 / ratio - 1.0), _MOST_IN * scale, _MOST_OUT * scale)
+        for _ in range(_SWELL_PASSES):
+            out = self.average @ out
+        return out[:, None] * unit(sums[:, :3])
 
 
-def _areas(skin: Skin, positions: FloatArray) -> FloatArray:
-    corners = positions[skin.mesh.faces]
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    third = np.repeat(np.sqrt((cross * cross).sum(axis=1)) / 6.0, 3)
-    return np.bincount(skin.mesh.faces.ravel(), third, len(positions)).astype(np.float64, copy=False)
+def _faces_between(skin: Skin, active: IntArray) -> IntArray:
+    """Return the faces (f, 3) whose corners are all active, numbered among these."""
+    local = np.full(len(skin.positions), -1, np.int32)
+    local[active] = np.arange(len(active))
+    faces = local[skin.mesh.faces]
+    return np.ascontiguousarray(faces[(faces >= 0).all(axis=1)])
+
+
+def _crosses(positions: FloatArray, faces: IntArray) -> FloatArray:
+    """Return a sixth of the cross product of two sides (f, 3): a third of each face's area."""
+    first, second, third = (positions[faces[:, corner]] for corner in range(3))
+    a, b = second - first, third - first
+    result = np.empty_like(a)
+    for axis in range(3):
+        i, j = (axis + 1) % 3, (axis + 2) % 3
+        result[:, axis] = (a[:, i] * b[:, j] - a[:, j] * b[:, i]) / 6.0
+    return result

@@ -43,6 +43,8 @@ class LayeredFace:
         What every muscle wants of the skin, by control.
     fields : mapping of str to (n, 3) float64
         Displacement of the welded skin at full contraction, by control [mm].
+    companions : mapping of str to (n, 3) float64
+        What a closing lid takes along, by control [mm].
     correctives : Correctives
     contact : Contact
     controls : tuple of Control
@@ -56,6 +58,7 @@ class LayeredFace:
     fibres: Mapping[str, FloatArray]
     pulls: Mapping[str, Pull]
     fields: Mapping[str, FloatArray]
+    companions: Mapping[str, FloatArray]
     correctives: Correctives
     contact: Contact
     controls: tuple[Control, ...]
@@ -101,7 +104,7 @@ class LayeredFace:
         correctives = Correctives.build(skin, moving)
         return LayeredFace(
             head, drawn, moving, fitted, skin, binding.fibres, binding.pulls, binding.fields,
-            correctives, Contact.build(skin, moving), controls,
+            binding.companions, correctives, Contact.build(skin, moving), controls,
         )  # fmt: skip
 
     def linear_skin(self, values: Mapping[str, float]) -> FloatArray:
@@ -112,13 +115,19 @@ class LayeredFace:
             amount = values.get(name, 0.0)
             if amount:
                 total += amount * field
+        for name, field in self.companions.items():
+            amount = values.get(name, 0.0)
+            if amount > 0.0:
+                total += amount * field
         return total
 
     def displace_skin(self, values: Mapping[str, float]) -> FloatArray:
         """Return the displacement (w, 3) [mm] of the welded skin by muscles alone."""
+        linear = self.linear_skin(values)
+        # Lids alone need no correctives, they turn about the eyeball.
         if not any(values.get(name, 0.0) for name in self.fields):
-            return np.zeros_like(self.skin.positions)
-        return self.correctives.shape(self.linear_skin(values))
+            return linear
+        return self.correctives.shape(linear)
 
     def displace(self, pose: Pose) -> FloatArray:
         """Return the displacement (n, 3) [mm, canonical frame] of every input vertex.

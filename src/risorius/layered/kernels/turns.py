@@ -13,8 +13,9 @@ from numba import njit
 
 __all__ = ["best_turns", "turn_forces"]
 
-_ROUNDS = 12
-_STILL = 1e-9
+_ROUNDS = 8
+# The torque shrinks fast: what is left after a step this small does not show [rad].
+_STILL = 1e-4
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -32,7 +33,7 @@ def _turn(covariance, rotation):
         scale = 1.0 / (abs(size) + 1e-12)
         x, y, z = x * scale, y * scale, z * scale
         angle = math.sqrt(x * x + y * y + z * z)
-        if angle < _STILL:
+        if angle < 1e-12:
             return
         x, y, z = x / angle, y / angle, z / angle
         s, c = math.sin(angle), math.cos(angle)
@@ -42,6 +43,8 @@ def _turn(covariance, rotation):
             rotation[0, k] = rx * c + (y * rz - z * ry) * s + x * along
             rotation[1, k] = ry * c + (z * rx - x * rz) * s + y * along
             rotation[2, k] = rz * c + (x * ry - y * rx) * s + z * along
+        if angle < _STILL:
+            return
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
