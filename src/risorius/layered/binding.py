@@ -10,12 +10,14 @@ from risorius.anatomy.mechanics import Mechanics
 from risorius.layered.muscle import EyeAction, MouthAction, Muscle, SheetAction
 from risorius.layered.muscle_map import MuscleMap
 from risorius.layered.pulls import (
+    REFERENCE_PITCH,
     Pull,
     eye_pull,
     lower_lid_pull,
     mouth_pull,
     near_skin,
     sheet_pull,
+    submental_pull,
     upper_lid_pull,
 )
 from risorius.layered.skin import Skin
@@ -40,7 +42,7 @@ class Binding:
     fields : mapping of str to (n, 3) float64
         Displacement at full contraction, by control [mm].
     companions : mapping of str to (n, 3) float64
-        What a device takes along where its control is above 0, by control [mm].
+        What a device takes along where its control is above 0, per unit of the control [mm].
     """
 
     fibres: dict[str, FloatArray] = field(default_factory=dict[str, FloatArray])
@@ -99,6 +101,8 @@ def bind_muscles(
             pull = _pull(muscle, binding.fibres.get(name), skin, mechanics, corners)
             binding.put(control, pull, solver.solve(pull))
     _bind_lids(binding, solver, skin, mechanics)
+    floor = solver.solve(submental_pull(skin, mechanics, fitted))
+    binding.companions["jaw_pitch"] = skin.even_vectors(floor) / REFERENCE_PITCH
     return binding
 
 

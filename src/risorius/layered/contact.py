@@ -15,13 +15,17 @@ from risorius.anatomy.jaw import JawPose
 from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.radial_surface import RadialSurface
 from risorius.head.head import Head
+from risorius.layered.kernels.hull_push import hull_shortfall
 from risorius.layered.lip_contact import LipContact
 from risorius.layered.outwards import unit
 from risorius.layered.skin import Skin
+from risorius.layered.skull_fit import MIRROR
 from risorius.spatial.hull import convex_hull
 
 __all__ = ["Contact"]
 
+# Lips and cheeks over the teeth keep this share of their thickness, up to so thick [mm].
+_LEFT, _THICKEST = 0.5, 10.0
 # Skin that was farther from the teeth keeps at least this distance [mm].
 _CLEAR = 0.3
 # Skin within this distance of the mouth's middle may meet teeth [mm].
@@ -45,20 +49,14 @@ class _Arch:
     offsets: FloatArray
     push: FloatArray
     least: FloatArray
-    low: FloatArray
-    high: FloatArray
+    box: FloatArray
 
     def shortfall(self, points: FloatArray) -> FloatArray:
         """Return how far (q, 3) points must move to be clear of the hull."""
-        result = np.zeros_like(points)
-        near = np.flatnonzero(((points > self.low) & (points < self.high)).all(axis=1))
-        if not len(near):
-            return result
-        height = points[near] @ self.planes.T - self.offsets
-        plane = height.argmax(axis=1)
-        highest = height[np.arange(len(near)), plane]
-        missing = np.clip(self.least[near] - highest, 0.0, _DEEPEST)
-        result[near] = missing[:, None] * self.push[plane]
+        result = np.empty_like(points)
+        hull_shortfall(
+            points, self.planes, self.offsets, self.push, self.least, self.box, _DEEPEST, result
+        )
         return result
 
 
@@ -88,11 +86,12 @@ class Contact:
     def build(skin: Skin, mechanics: Mechanics) -> Contact:
         """Bind the teeth, eyeballs and lips of one head."""
         middle = skin.mouth.line[np.argmin(np.abs(skin.mouth.place))]
-        near = np.linalg.norm(skin.positions - middle, axis=1) < _REACH * skin.scale
+        away = skin.even(np.linalg.norm(skin.positions - middle, axis=1))
+        near = away < _REACH * skin.scale
         shown = ~skin.hidden | (mechanics.lips.inside & (mechanics.lips.distance < 8.0))
         vertices = np.flatnonzero(near & (skin.mass > 1e-9)).astype(np.int32)
         arches = {
-            kind: _arch(_teeth_and_gums(mechanics.head, kind), skin.positions[vertices])
+            kind: _arch(_teeth_and_gums(mechanics.head, kind), skin, vertices)
             for kind in ("teeth_upper", "teeth_lower")
             if kind in mechanics.head.parts
         }
@@ -201,7 +200,10 @@ def _teeth_and_gums(head: Head, kind: str) -> FloatArray:
     return np.concatenate([teeth, gums.mesh.positions[np.asarray(distance) < _GUMS]])
 
 
-def _arch(teeth: FloatArray, rest: FloatArray) -> _Arch:
+def _arch(teeth: FloatArray, skin: Skin, vertices: IntArray) -> _Arch:
+    if skin.partner is not None:
+        teeth = np.concatenate([teeth, teeth * MIRROR])
+    rest = skin.positions
     hull = convex_hull(teeth)
     # Flat faces of the hull are split into triangles: one plane of each is enough.
     _, first = np.unique(
@@ -211,9 +213,16 @@ def _arch(teeth: FloatArray, rest: FloatArray) -> _Arch:
     )
     planes, offsets = hull.plane_normals[first], hull.plane_offsets[first]
     push = unit(planes * [1.0, 0.0, 1.0]) * (planes[:, 2:] > _BACK)
-    height = (rest @ planes.T - offsets).max(axis=1)
-    low, high = teeth.min(axis=0) - _CLEAR, teeth.max(axis=0) + _CLEAR
-    return _Arch(planes, offsets, push, np.minimum(height, _CLEAR), low, high)
+    own = (rest @ planes.T - offsets).max(axis=1)
+    height = skin.even(own)[vertices]
+    tissue = _LEFT * np.clip(height, 0.0, _THICKEST)
+    # The skin at rest is never pushed.
+    least = np.minimum(np.maximum(np.minimum(height, _CLEAR), tissue), own[vertices])
+    reach = float(least.max(initial=0.0))
+    box = np.stack([teeth.min(axis=0) - reach, teeth.max(axis=0) + reach])
+    # Planes that face forwards first: they are most often the ones that count.
+    order = np.argsort(-planes[:, 2], kind="stable")
+    return _Arch(np.ascontiguousarray(planes[order]), offsets[order], push[order], least, box)
 
 
 def _eye(side: str, skin: Skin, centre: FloatArray, surface: RadialSurface) -> _Eye:

@@ -21,6 +21,7 @@ __all__ = ["Correctives"]
 _LENGTH = 5.0
 _HOLD_LIDS, _HOLD_STILL = 4.0, 50.0
 _ROUNDS = 2
+_LEAST_WEIGHT, _MOST_WEIGHT = 0.02, 5.0
 _PASSES, _SWELL_PASSES = 6, 3
 _MOST_IN, _MOST_OUT = -3.0, 7.0
 
@@ -74,13 +75,12 @@ class Correctives:
     def build(skin: Skin, mechanics: Mechanics) -> Correctives:
         """Prepare the correctives of one head."""
         active = np.flatnonzero((skin.mobility > 0.0) & (skin.mass > 1e-9)).astype(np.int32)
-        stiff = csr_matrix(skin.stiff[active][:, active])
+        edges = _positive_edges(csr_matrix(skin.stiff[active][:, active]))
+        stiff = diags(np.asarray(edges.sum(axis=1)).ravel()) - edges
         length = _LENGTH * skin.scale
         hold = 1.0 + _HOLD_LIDS * skin.lids + _HOLD_STILL * (1.0 - skin.mobility)
         hold = skin.mass[active] * hold[active]
         matrix = csc_matrix(diags(hold) + length**2 * stiff)
-        edges = csr_matrix(stiff - diags(stiff.diagonal()))
-        edges.eliminate_zeros()
         faces = _faces_between(skin, active)
         entries = (np.ones(faces.size), (faces.ravel(), np.repeat(np.arange(len(faces)), 3)))
         around = csr_matrix(coo_matrix(entries, shape=(len(active), len(faces))))
@@ -92,7 +92,7 @@ class Correctives:
             area = average @ area
         return Correctives(
             skin, active, rest, edges.indptr.astype(np.int32), edges.indices.astype(np.int32),
-            -(length**2) * edges.data, hold, factorise(matrix), faces, around, average, depth,
+            length**2 * edges.data, hold, factorise(matrix), faces, around, average, depth,
             area,
         )  # fmt: skip
 
@@ -135,11 +135,27 @@ class Correctives:
         return out[:, None] * unit(sums[:, :3])
 
 
+def _positive_edges(stiff: csr_matrix) -> csr_matrix:
+    """Return the weight of every edge (m, m), at least a little.
+
+    Edges of obtuse triangles weigh less than zero in the Laplacian; with them the best rotation
+    of a thin vertex star may be a half turn.
+    """
+    edges = csr_matrix(diags(stiff.diagonal()) - stiff)
+    edges.eliminate_zeros()
+    edges.data = np.clip(edges.data, _LEAST_WEIGHT, _MOST_WEIGHT)
+    return edges
+
+
 def _faces_between(skin: Skin, active: IntArray) -> IntArray:
     """Return the faces (f, 3) whose corners are all active, numbered among these."""
     local = np.full(len(skin.positions), -1, np.int32)
     local[active] = np.arange(len(active))
-    faces = local[skin.mesh.faces]
+    faces = skin.mesh.faces
+    if skin.partner is not None:
+        # Together with the mirror image of the triangulation, so that sides are cut alike.
+        faces = np.concatenate([faces, skin.partner[faces[:, ::-1]]])
+    faces = local[faces]
     return np.ascontiguousarray(faces[(faces >= 0).all(axis=1)])
 
 

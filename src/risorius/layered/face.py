@@ -44,7 +44,7 @@ class LayeredFace:
     fields : mapping of str to (n, 3) float64
         Displacement of the welded skin at full contraction, by control [mm].
     companions : mapping of str to (n, 3) float64
-        What a closing lid takes along, by control [mm].
+        What closing lids and the opening jaw take along, per unit of their controls [mm].
     correctives : Correctives
     contact : Contact
     controls : tuple of Control

@@ -52,16 +52,20 @@ class LipContact:
         """Bind the lips of a skin."""
         soft = smooth_step(1.0 - lips.distance / (_SOFT * skin.scale))
         soft = np.where(np.isfinite(lips.distance), soft, 0.0)
-        sign = np.sign(np.nan_to_num(lips.to_lower - lips.to_upper))
+        apart = lips.to_lower - lips.to_upper
+        sign = np.sign(np.where(np.isfinite(apart), apart, 0.0))
         ends = 1.0 - smooth_step((np.abs(skin.mouth.place) - 0.8) / 0.2)
-        share = soft * sign * ends
+        share = skin.even(soft * sign * ends)
+        upper, lower = lips.slit.upper, lips.slit.lower
+        if skin.partner is not None:
+            upper, lower = (
+                np.unique(np.concatenate([line, skin.partner[line]])) for line in (upper, lower)
+            )
         half = skin.mouth.half_width
         places = half * np.linspace(-1.0, 1.0, _STATIONS)
         blank = np.zeros(_STATIONS)
         station = np.clip(skin.positions[:, 0], -half, half)
-        lip = LipContact(
-            lips.slit.upper, lips.slit.lower, skin.positions, places, blank, share, station
-        )
+        lip = LipContact(upper, lower, skin.positions, places, blank, share, station)
         height, _ = lip._gap(np.zeros_like(skin.positions))
         return LipContact(
             lip.upper, lip.lower, lip.rest, places, np.minimum(height, 0.0), share, station
@@ -85,10 +89,13 @@ class LipContact:
         rows: list[FloatArray] = []
         for line in (self.upper, self.lower):
             points = self.rest[line] + moved[line]
-            order = np.argsort(self.rest[line, 0], kind="stable")
-            x = self.rest[line, 0][order]
-            rows.append(
-                np.stack([np.interp(self.places, x, points[order, axis]) for axis in (1, 2)])
+            x, inverse, counts = np.unique(
+                self.rest[line, 0].round(3), return_inverse=True, return_counts=True
             )
+            # Vertices one above another, as mirrored lines may have, count as their mean.
+            points = np.stack(
+                [np.bincount(inverse, points[:, axis]) / counts for axis in range(3)], axis=1
+            )
+            rows.append(np.stack([np.interp(self.places, x, points[:, axis]) for axis in (1, 2)]))
         apart = rows[0] - rows[1]
         return apart[0], apart[1]

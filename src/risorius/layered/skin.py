@@ -86,7 +86,11 @@ class Skin:
     @cached_property
     def average(self) -> csr_matrix:
         """(n, n) mean of the neighbours of each vertex and itself, one half each."""
-        return averaging(self.mesh)
+        matrix = averaging(self.mesh)
+        if self.partner is None:
+            return matrix
+        # Polygons may be cut into triangles one way on the left and another on the right.
+        return csr_matrix(0.5 * (matrix + matrix[self.partner][:, self.partner]))
 
     @cached_property
     def mass(self) -> FloatArray:
@@ -248,7 +252,7 @@ def _mobility(mechanics: Mechanics) -> FloatArray:
     corner = marks.positions(("3.7", "3.12"))
     # The neck takes part farther back than the face, where the ears are.
     low = smooth_step((chin + 0.1 * height - points[:, 1]) / (0.25 * height))
-    behind = float(corner[:, 2].mean()) - (0.62 + 0.2 * low) * height
+    behind = float(corner[:, 2].mean()) - (0.62 + 0.33 * low) * height
     side = smooth_step((points[:, 2] - behind) / (0.3 * height))
     neck = smooth_step((points[:, 1] - (chin - 0.58 * height)) / (0.35 * height))
     top = smooth_step((float(eyes[1]) + 0.9 * height - points[:, 1]) / (0.25 * height))

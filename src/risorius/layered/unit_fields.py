@@ -10,7 +10,8 @@ import numpy.typing as npt
 from scipy.sparse import coo_matrix, csc_matrix, csr_matrix, diags
 from scipy.spatial import cKDTree
 
-from risorius._check import BoolArray, FloatArray
+from risorius._check import FloatArray
+from risorius.anatomy.smooth_step import smooth_step
 from risorius.layered.pulls.pull import Pull
 from risorius.layered.skin import Skin
 from risorius.mesh.factorisation import factorise
@@ -20,8 +21,9 @@ __all__ = ["FieldSolver"]
 
 # How far the skin carries a step and rounds a kink [mm].
 _LENGTH, _BEND = 7.0, 3.0
-# Skin farther than this from all that a muscle holds does not move [mm].
-_RANGE = 75.0
+# Skin farther than this from all that a muscle holds does not move, and the share of it over
+# which motion fades [mm].
+_RANGE, _FADE = 75.0, 0.5
 # Lips closer than this hold together, this strongly, within so many millimetres of their line.
 _SEAL_GAP, _SEAL, _SEAL_REACH = 3.5, 5.0, 5.0
 
@@ -58,27 +60,26 @@ class FieldSolver:
     def solve(self, pull: Pull) -> FloatArray:
         """Return the displacement (n, 3) [mm] of the skin at full contraction."""
         skin = self.skin
-        rows = np.flatnonzero(self._domain(pull.weight))
+        reach = self._reach(pull.weight)
+        rows = np.flatnonzero(reach > 0.0)
         field = np.zeros_like(skin.positions)
         if not len(rows):
             return field
         held = skin.mass[rows] * pull.weight[rows]
         matrix = (self._sealed if pull.seal else self._base)[rows][:, rows] + diags(held)
         field[rows] = factorise(csc_matrix(matrix))(held[:, None] * pull.goal[rows])
-        return field * skin.mobility[:, None]
+        return field * (skin.mobility * reach)[:, None]
 
-    def _domain(self, weight: FloatArray) -> BoolArray:
-        """Return the skin (n,) that a muscle can reach; the rest is held still."""
+    def _reach(self, weight: FloatArray) -> FloatArray:
+        """Return 1 on the skin (n,) that a muscle can move, fading to 0 where it is held still."""
         skin = self.skin
         centre = np.flatnonzero(weight > 0.02 * weight.max(initial=0.0))
-        near = np.zeros(len(weight), bool)
-        if len(centre):
-            limit = _RANGE * skin.scale
-            found = cKDTree(skin.positions[centre]).query(
-                skin.positions, distance_upper_bound=limit
-            )[0]
-            near = np.isfinite(found)
-        return near & (skin.mobility > 0.0) & (skin.mass > 1e-9)
+        if not len(centre):
+            return np.zeros(len(weight))
+        limit = _RANGE * skin.scale
+        found = cKDTree(skin.positions[centre]).query(skin.positions, distance_upper_bound=limit)[0]
+        fade = smooth_step((1.0 - np.minimum(found / limit, 1.0)) / _FADE)
+        return fade * (skin.mobility > 0.0) * (skin.mass > 1e-9)
 
     def _seal_matrix(self) -> csr_matrix:
         """Return the Laplacian (n, n) of springs between opposite lip margins."""
