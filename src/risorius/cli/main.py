@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from risorius import __version__
-from risorius.cli import check, demo, inspect, landmarks, project, render, rig
+from risorius.cli import check, clone, compare, demo, inspect, landmarks, project, render, rig
 from risorius.cli.exits import INTERRUPTED
 
 __all__ = ["app", "run"]
@@ -54,6 +54,8 @@ app.command("demo")(demo.demo)
 app.command("check")(check.check)
 app.command("rig")(rig.rig)
 app.command("inspect")(inspect.inspect)
+app.command("clone")(clone.clone)
+app.command("compare")(compare.compare)
 app.command("render")(render.render)
 app.command("landmarks")(landmarks.landmarks)
 app.add_typer(project.app, name="project")

@@ -1,0 +1,1 @@
+"""Benchmarks: how good, how fast; the answers are checked as well."""

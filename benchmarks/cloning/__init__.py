@@ -1,0 +1,1 @@
+"""Benchmark of motion cloning: pairs with known truth, a judge, baselines, a table."""

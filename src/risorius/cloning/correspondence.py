@@ -1,0 +1,170 @@
+"""How the skins correspond, by either profile."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from risorius._check import BoolArray, FloatArray
+from risorius.cloning.landmark_pairs import LandmarkPairs
+from risorius.cloning.mapping import Mapping, map_skin
+from risorius.cloning.parameters import CloneParameters
+from risorius.cloning.refinement import ray_mapping, refine
+from risorius.cloning.registration import register
+from risorius.cloning.rough_fit import rough_fit
+from risorius.cloning.subject import Subject
+from risorius.mesh.core import TriMesh
+from risorius.warp.rbf import RbfWarp
+
+__all__ = ["Correspondence", "SkinCarrier", "correspond"]
+
+
+class SkinCarrier(Protocol):
+    """Carries displacements of the source's skin to the target's."""
+
+    def __call__(self, deltas: FloatArray) -> FloatArray:
+        """Return (n, 3) [mm, target's frame] for `deltas` (v, 3) [mm, source's frame]."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Correspondence:
+    """Everything that links the two skins.
+
+    Parameters
+    ----------
+    pairs : LandmarkPairs
+    warp : RbfWarp
+        From the source, moved by the similarity, to the target.
+    fitted : TriMesh
+        The source's skin on the target [mm].
+    residual : (v,) float64
+        Distance of its vertices to the target; NaN where unknown [mm].
+    mapping : Mapping
+    carry : SkinCarrier
+    notes : tuple of str
+    """
+
+    pairs: LandmarkPairs
+    warp: RbfWarp
+    fitted: TriMesh
+    residual: FloatArray
+    mapping: Mapping
+    carry: SkinCarrier
+    notes: tuple[str, ...]
+
+
+def correspond(
+    source: Subject,
+    target: Subject,
+    pairs: LandmarkPairs,
+    moving: BoolArray,
+    parameters: CloneParameters,
+) -> Correspondence:
+    """Make the skins correspond.
+
+    Parameters
+    ----------
+    source, target : Subject
+    pairs : LandmarkPairs
+    moving : (v,) bool
+        Source vertices that move in any shape.
+    parameters : CloneParameters
+    """
+    if parameters.profile == "faithful":
+        return _faithful(source, target, pairs, moving, parameters)
+    fit = rough_fit(source, target, pairs)
+    found = register(source, target, fit)
+    rest = found.mesh.at(fit.positions)
+    mapping = map_skin(source, target, rest, found.mesh)
+    matrix = mapping.matrix(rest, curved=parameters.curved)
+    linear = np.broadcast_to(pairs.similarity.linear, (rest.vertex_count, 3, 3))
+    if parameters.local_scale > 0.0:
+        change = fit.warp.jacobian(rest.positions) - np.eye(3)
+        linear = (np.eye(3) + parameters.local_scale * change) @ linear
+    carry = _Improved(mapping, matrix, linear, rest, target.mesh.positions, parameters)
+    left = [n for n in source.lines() if n in target.lines() and n not in fit.lines]
+    notes = [
+        f"{name.replace('_', ' ')}: the eye's landmarks do not fit the others; matched by the skin"
+        for name in left
+    ]
+    return Correspondence(pairs, fit.warp, found.mesh, found.residual, mapping, carry, tuple(notes))
+
+
+def _faithful(
+    source: Subject,
+    target: Subject,
+    pairs: LandmarkPairs,
+    moving: BoolArray,
+    parameters: CloneParameters,
+) -> Correspondence:
+    found = refine(source, target, pairs, moving, parameters)
+    fitted = found.rest.at(found.warp(found.rest.positions))
+    mapping = ray_mapping(source, target, fitted, found.ray)
+    matrix = mapping.matrix(fitted, curved=False)
+    residual = np.full(source.mesh.vertex_count, np.nan)
+    residual[moving] = found.misses[-1] if found.misses else 0.0
+    linear = pairs.similarity.linear
+    carry = _Published(
+        mapping, matrix, linear, found.rest, fitted, found.warp, target.mesh.positions, parameters
+    )
+    said = f"{found.centre_count} centres after {found.pass_count} passes, rays {found.ray:.1f} mm"
+    return Correspondence(pairs, found.warp, fitted, residual, mapping, carry, (said,))
+
+
+@dataclass(frozen=True, eq=False)
+class _Improved:
+    mapping: Mapping
+    matrix: csr_matrix
+    linear: FloatArray
+    rest: TriMesh
+    target: FloatArray
+    parameters: CloneParameters
+
+    def __call__(self, deltas: FloatArray) -> FloatArray:
+        moves = _moves(deltas, self.parameters)
+        kept = np.where(moves[:, None], deltas, 0.0)
+        turned = np.einsum("vij,vj->vi", self.linear, kept)
+        result = self.matrix @ turned
+        if self.parameters.form == "absolute":
+            places = _at(self.mapping, self.rest.positions)
+            result = result + (places - self.target) * ~self.mapping.unmapped[:, None]
+        result[~self.mapping.moved(moves)] = 0.0
+        return result
+
+
+@dataclass(frozen=True, eq=False)
+class _Published:
+    """S_j = G(moved source), taken at the places of the neutral (spec 2.7, erratum E7)."""
+
+    mapping: Mapping
+    matrix: csr_matrix
+    linear: FloatArray
+    rest: TriMesh
+    fitted: TriMesh
+    warp: RbfWarp
+    target: FloatArray
+    parameters: CloneParameters
+
+    def __call__(self, deltas: FloatArray) -> FloatArray:
+        moves = _moves(deltas, self.parameters)
+        moved = self.fitted.positions.copy()
+        if moves.any():
+            moved[moves] = self.warp(self.rest.positions[moves] + deltas[moves] @ self.linear.T)
+        if self.parameters.form == "absolute":
+            result = _at(self.mapping, moved) - self.target
+        else:
+            result = self.matrix @ (moved - self.fitted.positions)
+        result[~self.mapping.moved(moves)] = 0.0
+        return result
+
+
+def _moves(deltas: FloatArray, parameters: CloneParameters) -> BoolArray:
+    return np.asarray(np.linalg.norm(deltas, axis=1) > parameters.still)
+
+
+def _at(mapping: Mapping, positions: FloatArray) -> FloatArray:
+    return np.einsum("nc,ncj->nj", mapping.bary, positions[mapping.faces])

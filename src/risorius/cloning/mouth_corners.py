@@ -1,0 +1,164 @@
+"""Places at the corners of the mouth, where several sheets of skin lie on one another.
+
+Closest points jump between the sheets there. So places are compared by where they lie on the
+skin as well: how far along it each lip's contact line is, and on which side of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse.csgraph import dijkstra
+
+from risorius._check import FloatArray, IntArray
+from risorius.cloning.subject import Subject
+from risorius.mesh.connectivity import edges
+from risorius.mesh.core import TriMesh
+from risorius.mesh.normals import vertex_normals
+from risorius.mesh.slit import edge_graph
+from risorius.spatial.triangles import closest_bary
+
+__all__ = ["CornerPlaces", "MouthCorners"]
+
+# The zone around each corner, and the larger one on the source, as shares of the mouth's width.
+_ZONE, _SOURCE_ZONE = 0.16, 0.3
+# What a millimetre along the skin counts for, compared with one in space.
+_SKIN = 0.7
+# What a unit of difference between the normals counts for [mm].
+_TURN = 1.5
+# The places of two joined vertices are torn apart if the way between them along the source's
+# skin is longer than this many times their edge, and by more than the second number [mm].
+_TORN, _TORN_LEAST = 1.8, 0.45
+# Query points that are compared with all faces at once.
+_BLOCK = 256
+
+
+@dataclass(frozen=True, eq=False)
+class CornerPlaces:
+    """Places (k) on source faces; see `risorius.spatial.ClosestPoints`."""
+
+    face: IntArray
+    bary: FloatArray
+    distance: FloatArray
+    positions: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class MouthCorners:
+    """Target vertices near the corners of the mouth, source faces near its own, their signatures.
+
+    Parameters
+    ----------
+    vertices : (k,) int32
+        Of the target's skin.
+    faces : (f,) int32
+        Of the source's skin.
+    wanted : (k, 2) float64
+        Signature of each vertex: half the distance to the upper line less that to the lower,
+        and the distance to the nearer line, negative inside the mouth [mm, of the source].
+    given : (v, 2) float64
+        The same of every source vertex.
+    """
+
+    vertices: IntArray
+    faces: IntArray
+    wanted: FloatArray
+    given: FloatArray
+
+    @staticmethod
+    def of(source: Subject, target: Subject) -> MouthCorners:
+        """Find the zones; empty where either head's mouth is closed by skin."""
+        nothing, none = np.zeros(0, np.int32), np.zeros((0, 2))
+        if source.lips is None or target.lips is None:
+            return MouthCorners(nothing, nothing, none, none)
+        given, wanted = _signature(source), _signature(target)
+        near = target.lips.to_corner < _ZONE * target.lips.width
+        vertices = np.flatnonzero(near & np.isfinite(wanted).all(axis=1)).astype(np.int32)
+        ours = (source.lips.to_corner < _SOURCE_ZONE * source.lips.width) & np.isfinite(given).all(
+            axis=1
+        )
+        faces = np.flatnonzero(ours[source.mesh.faces].all(axis=1)).astype(np.int32)
+        if not len(faces):
+            vertices = nothing
+        return MouthCorners(vertices, faces, wanted[vertices], given)
+
+    def search(
+        self, surface: TriMesh, points: FloatArray, normals: FloatArray
+    ) -> tuple[IntArray, CornerPlaces]:
+        """Return the vertices and their places for target `points` (n, 3) on a moved source."""
+        queries, facing = points[self.vertices], normals[self.vertices]
+        turns = vertex_normals(surface.positions, surface.faces)[surface.faces[self.faces]]
+        corners = surface.positions[surface.faces[self.faces]]
+        marks = self.given[surface.faces[self.faces]]
+        best = np.zeros(len(queries), np.int32)
+        bary = np.zeros((len(queries), 3))
+        distance, places = np.zeros(len(queries)), np.zeros((len(queries), 3))
+        f = len(self.faces)
+        for start in range(0, len(queries), _BLOCK):
+            rows = np.arange(start, min(start + _BLOCK, len(queries)))
+            points_twice = np.repeat(queries[rows], f, axis=0)
+            shares = closest_bary(points_twice, np.tile(corners, (len(rows), 1, 1)))
+            shares = shares.reshape(len(rows), f, 3)
+            there = np.einsum("qfc,fcj->qfj", shares, corners)
+            apart = np.linalg.norm(there - queries[rows, None], axis=2)
+            mark = np.einsum("qfc,fcj->qfj", shares, marks)
+            astray = np.linalg.norm(mark - self.wanted[rows, None], axis=2)
+            turn = np.einsum("qfc,fcj->qfj", shares, turns) - facing[rows, None]
+            turned = np.linalg.norm(turn, axis=2)
+            cost = apart**2 + (_SKIN * astray) ** 2 + (_TURN * turned) ** 2
+            chosen = cost.argmin(axis=1)
+            at = (np.arange(len(rows)), chosen)
+            best[rows], bary[rows] = chosen, shares[at]
+            distance[rows], places[rows] = apart[at], there[at]
+        face = self.faces[best] if f else best
+        return self.vertices, CornerPlaces(face, bary, distance, places)
+
+    def torn(self, rest: TriMesh, mesh: TriMesh, corners: IntArray, bary: FloatArray) -> IntArray:
+        """Return the target vertices (k,) whose places have lost those of their neighbours.
+
+        Parameters
+        ----------
+        rest : TriMesh
+            The source at rest.
+        mesh : TriMesh
+            The target.
+        corners : (n, 3) int32
+            Source vertices around the place of each target vertex.
+        bary : (n, 3) float64
+        """
+        if not len(self.vertices):
+            return self.vertices
+        inside = np.zeros(mesh.vertex_count, bool)
+        inside[self.vertices] = True
+        pairs = edges(mesh.faces)
+        pairs = pairs[inside[pairs].all(axis=1)]
+        used = np.unique(rest.faces[self.faces])
+        row = np.full(rest.vertex_count, -1)
+        row[used] = np.arange(len(used))
+        graph = edge_graph(rest)[used][:, used]
+        length = np.linalg.norm(mesh.positions[pairs[:, 0]] - mesh.positions[pairs[:, 1]], axis=1)
+        limit = _TORN * float(length.max(initial=0.0)) + 4.0 * _TORN_LEAST
+        ways = dijkstra(graph, indices=np.arange(len(used)), limit=limit)
+        places = np.einsum("nc,ncj->nj", bary, rest.positions[corners])
+        first, second = pairs.T
+        ends = [
+            np.linalg.norm(places[v][:, None] - rest.positions[corners[v]], axis=2)
+            for v in (first, second)
+        ]
+        between = ways[row[corners[first]][:, :, None], row[corners[second]][:, None, :]]
+        way = (ends[0][:, :, None] + between + ends[1][:, None, :]).min(axis=(1, 2))
+        straight = np.linalg.norm(places[first] - places[second], axis=1)
+        same = (corners[first][:, :, None] == corners[second][:, None, :]).any(axis=(1, 2))
+        way = np.where(same, straight, way)
+        bad = (way > _TORN * length) & (way > length + _TORN_LEAST)
+        return np.unique(pairs[bad]).astype(np.int32)
+
+
+def _signature(subject: Subject) -> FloatArray:
+    assert subject.lips is not None
+    to_upper, to_lower = subject.to_lines.T
+    nearer = np.minimum(to_upper, to_lower)
+    with np.errstate(invalid="ignore"):
+        across = 0.5 * (to_upper - to_lower)
+    return np.stack([across, np.where(subject.cavity == 1, -nearer, nearer)], axis=1)
