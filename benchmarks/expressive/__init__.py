@@ -1,0 +1,1 @@
+"""How much of the motion of sculpted expressions the layered face can make."""
