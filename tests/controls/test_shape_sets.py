@@ -51,6 +51,6 @@ def test_a_shape_that_the_face_cannot_make_is_left_out_with_the_reason() -> None
 
 
 def test_an_unknown_set_is_refused_with_the_known_ones() -> None:
-    message = "shapes: visemes is not known; choose from singles, emotions, arkit"
+    message = "shapes: visemes is not known; choose from singles, emotions, arkit, visemes_mpeg4"
     with pytest.raises(ParameterError, match=message):
         list_shapes(ALL, BOOK, sets=("arkit", "visemes"))

@@ -149,7 +149,9 @@ Shapes = Annotated[
     typer.Option(
         "--shapes",
         metavar="SET,...",
-        help="Sets of shapes: singles (every control by itself), emotions, arkit.  [default: all]",
+        help="Sets of shapes: singles (every control by itself), emotions, arkit; also facs, "
+        "visemes_oculus, visemes_mpeg4, fap (MPEG-4 parameters) and mpeg4_84 (the thesis's set).  "
+        "[default: singles,emotions,arkit]",
         rich_help_panel=_METHOD,
         show_default=False,
     ),

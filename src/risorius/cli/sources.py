@@ -11,9 +11,10 @@ from typing import Any
 from risorius import _formats
 from risorius.anatomy.mechanics import Mechanics
 from risorius.cli.talk import Talk
-from risorius.controls.shape_sets import ShapeList, list_shapes
+from risorius.controls.shape_sets import SOLVED_SETS, ShapeList, list_shapes
 from risorius.errors import ParameterError
 from risorius.head.head import Head, HeadOptions
+from risorius.playback.solved_sets import with_solved_sets
 from risorius.project import (
     BUILTIN,
     Project,
@@ -178,6 +179,9 @@ def bake_head(project: Project, talk: Talk, *, only: Sequence[str] | None = None
     for note in mechanics.notes:
         talk.note(note)
     shapes = list_shapes(face.controls, presets, sets=project.shapes)
+    if set(project.shapes) & set(SOLVED_SETS):
+        with talk.stage("solve") as tick:
+            shapes = with_solved_sets(shapes, face, project.shapes, progress=tick)
     if only is not None:
         shapes = _chosen(shapes, only)
     with talk.stage("bake") as tick:

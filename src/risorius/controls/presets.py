@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
 from typing import Any, cast
@@ -16,6 +16,7 @@ from risorius._check import as_number
 from risorius.controls.arkit import arkit_shapes
 from risorius.controls.control import Control, Pose
 from risorius.controls.standard import bilateral, sided
+from risorius.controls.standard_sets import STANDARD_SETS
 from risorius.errors import FormatError
 
 __all__ = ["EMOTIONS", "FittedPose", "PresetBook", "default_presets", "mirrored", "parse_presets"]
@@ -49,11 +50,17 @@ class PresetBook:
         Complete, right-hand ARKit shapes included.
     fallbacks : mapping of str to Pose
         What replaces a control that a face lacks; names without side.
+    standards : mapping of str to mapping of str to Pose
+        Poses of each of `STANDARD_SETS`, by the entry's name without prefix; of entries with a
+        side both are there.
     """
 
     emotions: Mapping[str, Pose]
     arkit: Mapping[str, Pose]
     fallbacks: Mapping[str, Pose]
+    standards: Mapping[str, Mapping[str, Pose]] = field(
+        default_factory=dict[str, Mapping[str, Pose]]
+    )
 
     def fit(self, pose: Pose, controls: Sequence[Control]) -> FittedPose:
         """Express `pose` in the controls that a face has, by the fallbacks where needed."""
@@ -163,7 +170,30 @@ def parse_presets(data: Mapping[str, Any], *, source: str) -> PresetBook:
         name: {other: as_number(f"{source}: fallbacks.{name}", share) for other, share in e.items()}
         for name, e in _section(data, "fallbacks", source).items()
     }
-    return PresetBook(emotions, arkit, fallbacks)
+    standards = {name: _standard(data, name, source) for name in STANDARD_SETS}
+    return PresetBook(emotions, arkit, fallbacks, standards)
+
+
+def _standard(data: Mapping[str, Any], section: str, source: str) -> dict[str, Pose]:
+    """Return the poses of one of `STANDARD_SETS`, the missing side of one-sided ones mirrored."""
+    listed = {
+        name: _expand(entry, f"{source}: {section}.{name}")
+        for name, entry in _section(data, section, source).items()
+    }
+    known = STANDARD_SETS[section].entries()
+    unknown = [name for name in listed if name.removesuffix("_l").removesuffix("_r") not in known]
+    if unknown:
+        raise FormatError(f"{source}: {section}: not in this standard: {', '.join(unknown)}")
+    result: dict[str, Pose] = {}
+    for name in known:
+        if name in listed:
+            result[name] = listed[name]
+        for own, other in ((f"{name}_l", f"{name}_r"), (f"{name}_r", f"{name}_l")):
+            if own in listed:
+                result[own] = listed[own]
+            elif other in listed:
+                result[own] = mirrored(listed[other])
+    return result
 
 
 @cache

@@ -8,12 +8,25 @@ from dataclasses import dataclass
 from risorius.controls.arkit import arkit_shapes
 from risorius.controls.control import Control, Pose
 from risorius.controls.presets import PresetBook
+from risorius.controls.standard_sets import STANDARD_SETS
 from risorius.errors import ParameterError
 
-__all__ = ["SHAPE_SETS", "ShapeList", "list_shapes"]
+__all__ = ["ALL_SHAPE_SETS", "SHAPE_SETS", "SOLVED_SETS", "ShapeList", "list_shapes"]
 
 SHAPE_SETS = ("singles", "emotions", "arkit")
-"""Known sets, in the order in which their shapes appear in a rig."""
+"""Sets that a rig gets unless others are chosen, in the order of their shapes."""
+
+SOLVED_SETS = ("fap", "mpeg4_84")
+"""Sets whose poses depend on the head and are solved on it (`risorius.playback.fap_shapes`)."""
+
+ALL_SHAPE_SETS = (*SHAPE_SETS, *STANDARD_SETS, *SOLVED_SETS)
+"""Every set that can be chosen.
+
+``fap`` are the low-level parameters of MPEG-4, both ways where they have two; ``mpeg4_84`` is the
+set of the thesis: 64 of them in their positive direction, the 14 visemes and the six expressions.
+"""
+
+_NO_POSE = "no pose in the presets makes it"
 
 
 @dataclass(frozen=True)
@@ -33,17 +46,17 @@ def list_shapes(
     """List the shapes of the named `sets` that a face with `controls` can make.
 
     Singles are named by their control at its upper end, with ``_neg`` behind the name for the
-    lower end of a two-way control.
+    lower end of a two-way control. Of `SOLVED_SETS` only the shapes that presets hold are listed.
 
     Raises
     ------
     ParameterError
         If a set is unknown.
     """
-    unknown = [name for name in sets if name not in SHAPE_SETS]
+    unknown = [name for name in sets if name not in ALL_SHAPE_SETS]
     if unknown:
         raise ParameterError(
-            f"shapes: {', '.join(unknown)} is not known; choose from {', '.join(SHAPE_SETS)}"
+            f"shapes: {', '.join(unknown)} is not known; choose from {', '.join(ALL_SHAPE_SETS)}"
         )
     poses: dict[str, Pose] = {}
     left_out: dict[str, str] = {}
@@ -52,15 +65,7 @@ def list_shapes(
             poses[control.name] = {control.name: control.high}
             if control.low < control.default:
                 poses[f"{control.name}_neg"] = {control.name: control.low}
-    wanted: dict[str, Pose] = {}
-    if "emotions" in sets:
-        wanted |= dict(presets.emotions)
-    if "arkit" in sets:
-        for shape in arkit_shapes():
-            if shape.name in presets.arkit:
-                wanted[shape.name] = presets.arkit[shape.name]
-            else:
-                left_out[shape.name] = "no pose in the presets makes it"
+    wanted = _wanted(presets, sets, left_out)
     for name, pose in wanted.items():
         fitted = presets.fit(pose, controls)
         if fitted.missing and len(fitted.missing) == len(pose):
@@ -70,3 +75,35 @@ def list_shapes(
             if fitted.missing:
                 left_out[f"{name} (in part)"] = f"made without {', '.join(fitted.missing)}"
     return ShapeList(poses, left_out)
+
+
+def _add_standard(
+    section: str, presets: PresetBook, wanted: dict[str, Pose], left_out: dict[str, str]
+) -> None:
+    """Add the shapes of a standard to those that are `wanted` or `left_out`."""
+    standard = STANDARD_SETS[section]
+    poses = presets.standards.get(section, {})
+    reasons = standard.left_out()
+    for entry in standard.entries():
+        found = [name for name in (entry, f"{entry}_l", f"{entry}_r") if name in poses]
+        for name in found:
+            wanted[standard.prefix + name] = poses[name]
+        if not found:
+            left_out[standard.prefix + entry] = reasons.get(entry, _NO_POSE)
+
+
+def _wanted(presets: PresetBook, sets: Sequence[str], left_out: dict[str, str]) -> dict[str, Pose]:
+    """Return the poses of the sets in the presets; what they lack goes to `left_out`."""
+    wanted: dict[str, Pose] = {}
+    if "emotions" in sets or "mpeg4_84" in sets:
+        wanted |= dict(presets.emotions)
+    if "arkit" in sets:
+        for shape in arkit_shapes():
+            if shape.name in presets.arkit:
+                wanted[shape.name] = presets.arkit[shape.name]
+            else:
+                left_out[shape.name] = _NO_POSE
+    for section in STANDARD_SETS:
+        if section in sets or (section == "visemes_mpeg4" and "mpeg4_84" in sets):
+            _add_standard(section, presets, wanted, left_out)
+    return wanted

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from risorius._check import one_of
-from risorius.controls.shape_sets import SHAPE_SETS
+from risorius.controls.shape_sets import ALL_SHAPE_SETS, SHAPE_SETS
 from risorius.head.head import HeadOptions
 from risorius.head.part import PART_KINDS
 
@@ -80,7 +80,7 @@ class Project:
         one_of("method", self.method, METHODS)
         one_of("profile", self.profile, PROFILES)
         for name in self.shapes:
-            one_of("shapes", name, SHAPE_SETS)
+            one_of("shapes", name, ALL_SHAPE_SETS)
         for kind in self.parts:
             one_of("part", kind, PART_KINDS)
 

@@ -1,0 +1,3 @@
+"""Compiled loops of the player; plain functions on plain arrays, without threads."""
+
+__all__ = []
