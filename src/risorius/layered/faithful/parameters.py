@@ -48,7 +48,7 @@ def _muscle_solver() -> Parameters:
 def _skin_solver() -> Parameters:
     return Parameters(
         iterations=4, sweeps="alternating", bend_step_limit=0.2, area_step_limit=0.2,
-        tolerance=2e-4, iteration_limit=240,
+        tolerance=4e-5, iteration_limit=300,
     )  # fmt: skip
 
 
@@ -84,6 +84,8 @@ class FaithfulParameters:
         The lining of the mouth hangs on bone from this distance to the lip lines on [mm].
     lid_pinned : float
         Lid vertices that follow their margin by more than this share are moved by it alone.
+    lid_hold : float
+        Stiffness that the others are held with, times that share.
     influence_reach : float
         Distance along the skin from what hangs on muscle or jaw to where nothing moves, as share
         of the head's height.
@@ -115,6 +117,7 @@ class FaithfulParameters:
     facing: float = 0.1
     lining_gap: float = 8.0
     lid_pinned: float = 0.5
+    lid_hold: float = 0.2
     influence_reach: float = 0.25
     teeth_rounds: int = 3
     ramp_steps: int = 5
@@ -123,7 +126,7 @@ class FaithfulParameters:
 
     def __post_init__(self) -> None:
         for name in ("anchor", "bone_anchor", "largest_contraction", "largest_ring_contraction",
-                     "lid_pinned", "shortening_limit"):  # fmt: skip
+                     "lid_pinned", "lid_hold", "shortening_limit"):  # fmt: skip
             as_number(name, getattr(self, name), low=0.0, high=1.0)
         for name in ("ramp_steps", "ramp_sweeps", "teeth_rounds"):
             as_number(name, getattr(self, name), low=1)

@@ -97,7 +97,7 @@ def build_skin_model(
         constraints = replace(
             _eased(own, inv_mass == 0.0),
             distances=Distances.joined([own.distances, anchored]),
-            holds=Holds(held, stiffness),
+            holds=Holds(held, p.lid_hold * stiffness),
         )
         model = Model(np.concatenate([mesh.positions, places]), constraints, inv_mass)
     notes = tuple(dict.fromkeys(str(warning.message) for warning in caught))
