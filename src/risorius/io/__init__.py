@@ -1,6 +1,6 @@
 """Files: one module per format; importing this package makes all of them known."""
 
-from risorius.io import gltf, landmarks, npz, obj, obj_folder, ply, stl, usd
+from risorius.io import gltf, landmarks, motion, npz, obj, obj_folder, ply, stl, usd
 from risorius.io.atomic import atomic_folder, atomic_write, write_bytes
 from risorius.io.bounded import read_bytes_limited, read_json
 
@@ -9,6 +9,7 @@ __all__ = [
     "atomic_write",
     "gltf",
     "landmarks",
+    "motion",
     "npz",
     "obj",
     "obj_folder",
