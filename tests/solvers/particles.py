@@ -13,7 +13,7 @@ from risorius.solvers.surface import SurfaceStiffness, surface_constraints
 from tests.mesh.shapes import sphere, star_of, torus, without_faces
 
 TETRAHEDRON = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)], np.int32)
-SOFT = SurfaceStiffness(stretch=0.15, bend=0.3, area=0.4, volume=1.0)
+SOFT = SurfaceStiffness(stretch=0.15, bend=0.3, area=0.4, volume=0.7)
 
 
 def dodecahedron() -> TriMesh:

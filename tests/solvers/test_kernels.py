@@ -26,7 +26,8 @@ from tests.solvers.particles import (
     skin,
 )
 
-STILL = Parameters(damping=1.0)
+# Without step limits a projection is the printed formula.
+STILL = Parameters(damping=1.0, bend_step_limit=None, area_step_limit=None)
 PATHS: tuple[Path, ...] = ("scalar", "simd")
 # float32, after as many as thirty sweeps, in sizes of the model.
 CLOSE = 2e-6
@@ -109,6 +110,20 @@ def test_compliance_reproduces_one_published_projection(kind: str, path: Path) -
     move = np.abs(published - positions).max()
     assert move > 1e-5
     assert np.abs(compliant - published).max() < 0.01 * move
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_compliance_stiffens_with_the_square_of_the_duration_of_a_substep(path: Path) -> None:
+    table = Distances(pairs_of((0, 1)), [1.0], 0.2)
+    model = Model([(0, 0, 0), (1, 0, 0)], Constraints(table), inv_mass=[0.0, 1.0])
+    stretched = np.array([(0, 0, 0), (2, 0, 0)], float)
+    for dt, wanted in ((0.0166, 0.2), (2 * 0.0166, 1 / (1 + 4 / 4)), (0.0083, 1 / (1 + 4 * 4))):
+        parameters = replace(STILL, stiffness_rule="compliance", dt=dt)
+        found = _moved(model, stretched, parameters=parameters, path=path)
+        assert 2.0 - found[1, 0] == pytest.approx(wanted, rel=1e-5)
+        halved = replace(parameters, dt=2 * dt, substeps=2)
+        twice = _moved(model, stretched, parameters=halved, path=path)
+        assert twice[1, 0] - 1.0 == pytest.approx((1.0 - wanted) ** 2, rel=1e-5)
 
 
 @pytest.mark.parametrize("kind", ["distance", "area", "bend", "volume"])

@@ -177,7 +177,7 @@ def test_a_pose_depends_neither_on_its_neighbours_nor_on_its_past(path: Path, pr
         assert alone.iterations[0] == together.iterations[number]
     start = State(together.positions[1], np.zeros_like(model.rest_positions))
     later = solver.settle(model, start, Control(targets=poses[0]), parameters=parameters)
-    assert np.abs(later.positions - together.positions[0]).max() < 1e-4 * model.size
+    assert np.abs(later.positions - together.positions[0]).max() < 3e-4 * model.size
     np.testing.assert_allclose(together.positions[2], model.rest_positions, atol=1e-3)
 
 
@@ -260,10 +260,11 @@ def test_what_stops_being_finite_is_an_error_with_iteration_and_residual() -> No
     points = np.array([(0, 0, 0), (1, 0, 0), (0.5, 1, 0), (0.5, -1, 0)], float)
     model = Model(points, Constraints(bends=Bends(pairs_of((0, 1, 2, 3)), [0.0], 1.0)))
     far = points * 1e160
+    wild = Parameters(bend_step_limit=None)
     with pytest.raises(SolverError, match=r"in iteration 1; largest residuals before it: holds"):
-        Solver(path="scalar").step(model, State(far, np.zeros((4, 3))))
+        Solver(path="scalar").step(model, State(far, np.zeros((4, 3))), parameters=wild)
     with pytest.raises(SolverError, match="stopped being finite in iteration"):
-        Solver().settle(model, State(points * 1e35, np.zeros((4, 3))))
+        Solver().settle(model, State(points * 1e35, np.zeros((4, 3))), parameters=wild)
 
 
 _MODEL = _spring()
@@ -330,8 +331,6 @@ def test_profiles_differ_in_explicit_fields_only() -> None:
             stiffness_rule="each_iteration",
             sweeps="forward",
             tolerance=1e-4,
-            bend_step_limit=None,
-            area_step_limit=None,
         )
         == faithful
     )

@@ -29,8 +29,10 @@ __all__ = ["SIZES", "head_model", "run"]
 # Vertex counts of thesis table 5.1, and two that are larger.
 SIZES = (1466, 2502, 4604, 4904, 20000, 80000)
 _LANE_POSES = 16
-# Constraint-iterations per timed call, so that calls take a few milliseconds at every size.
+# Constraint-iterations per timed call: a few milliseconds at every size, and enough sweeps for
+# the caches to hold what they hold in a long run.
 _WORK = 400_000
+_FEWEST = 4
 # Area stiffness of .95, as published, trembles on slivers; time does not depend on it.
 _STIFFNESS = SurfaceStiffness(area=0.5)
 _ANCHOR = 0.2
@@ -74,7 +76,7 @@ def _one_size(size: int, rounds: int, *, with_peer: bool) -> dict[str, Any]:
     order = model.order
     ordered = time.process_time() - began
     count = model.constraints.count
-    iterations = max(2, round(_WORK / count))
+    iterations = max(_FEWEST, round(_WORK / count))
     control, parameters = Control(targets=targets), Parameters()
     sequence64 = layout_of(model, parameters, "sequence", np.float64)
     sequence32 = layout_of(model, parameters, "sequence", np.float32)
@@ -83,15 +85,14 @@ def _one_size(size: int, rounds: int, *, with_peer: bool) -> dict[str, Any]:
     packed = SingleRun(model, control, parameters, packed32)
     lanes = LaneRun(model, control, parameters, sequence32, pose_count=_LANE_POSES, threads=1)
     difference = _differences(model, scalar, packed, lanes)
-    few = max(1, iterations // _LANE_POSES)
     ways: dict[str, tuple[Callable[[int], None], int, int]] = {
         "scalar": (scalar.sweep, iterations, 1),
         "packed": (packed.sweep, iterations, 1),
-        "lanes": (lanes.sweep, few, _LANE_POSES),
+        "lanes": (lanes.sweep, _FEWEST, _LANE_POSES),
     }
     peer = peer_iteration(model) if with_peer else None
     if peer is not None:
-        ways["pypbd"] = (peer, max(1, iterations // 16), 1)
+        ways["pypbd"] = (peer, _FEWEST, 1)
     times = _interleaved(ways, rounds)
     tables = sum(np.asarray(t).nbytes for t in (*packed32.tables, *packed32.volumes))
     filled = sum(len(g) for g in (order.distances, order.areas, order.bends))

@@ -268,7 +268,8 @@ def _failure(model: Model, run: Run, start: FloatArray, sweeps: int) -> SolverEr
         if not run.is_finite():
             break
         last = run.positions()
-    worst = residuals(model, last if last.ndim == 2 else last[0])
+    with np.errstate(over="ignore", invalid="ignore"):
+        worst = residuals(model, last if last.ndim == 2 else last[0])
     named = ", ".join(f"{kind} {residual.largest:.3g}" for kind, residual in worst.items())
     return SolverError(
         f"solver: a coordinate stopped being finite in iteration {iteration}; largest residuals "

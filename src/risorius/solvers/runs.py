@@ -17,7 +17,7 @@ from risorius.solvers.layout import Layout
 from risorius.solvers.model import Control, Model
 from risorius.solvers.parameters import Parameters
 
-__all__ = ["LaneRun", "Run", "SingleRun", "controlled"]
+__all__ = ["LaneRun", "Run", "SingleRun"]
 
 
 class Run(Protocol):
@@ -57,7 +57,7 @@ class Run(Protocol):
         ...
 
 
-def controlled(
+def _controlled(
     name: str, given: FloatArray | None, rest: FloatArray, pose_count: int | None
 ) -> FloatArray:
     """Return a control array of the full shape: given, or at rest."""
@@ -91,12 +91,12 @@ class SingleRun:
         self._alternating = parameters.sweeps == "alternating"
         self._compliant = parameters.stiffness_rule == "compliance"
         rest = model.rest_positions
-        targets = controlled(
+        targets = _controlled(
             "targets", control.targets, rest[model.constraints.holds.particles], None
         )
         self._targets = self._flat(frame.inside(targets[order.holds]))
-        self._pinned = frame.inside(controlled("pinned", control.pinned, rest[model.pinned], None))
-        volumes = controlled("rest_volumes", control.rest_volumes, _rest_volumes(model), None)
+        self._pinned = frame.inside(_controlled("pinned", control.pinned, rest[model.pinned], None))
+        volumes = _controlled("rest_volumes", control.rest_volumes, _rest_volumes(model), None)
         self._rest = (volumes / frame.scale**3).astype(self._dtype)
         touched = _contacts(control)
         if touched.points.ndim != 2:
@@ -218,11 +218,13 @@ class LaneRun:
         frame, order = layout.frame, model.order
         rest = model.rest_positions
         held = rest[model.constraints.holds.particles]
-        targets = controlled("targets", control.targets, held, pose_count)
+        targets = _controlled("targets", control.targets, held, pose_count)
         self._targets = self._laned(frame.inside(targets[:, order.holds]))
-        pinned = controlled("pinned", control.pinned, rest[model.pinned], pose_count)
+        pinned = _controlled("pinned", control.pinned, rest[model.pinned], pose_count)
         self._pinned = frame.inside(pinned)
-        volumes = controlled("rest_volumes", control.rest_volumes, _rest_volumes(model), pose_count)
+        volumes = _controlled(
+            "rest_volumes", control.rest_volumes, _rest_volumes(model), pose_count
+        )
         self._rest = self._laned(volumes[..., None] / frame.scale**3)
         self._contacts = self._contact_tables(_contacts(control))
         self._row_count = model.particle_count + layout.cap_count

@@ -2,6 +2,8 @@
 # ruff: noqa: PLR0913, PLR0917
 """Move vectors between arrays and registers."""
 
+import platform
+
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
@@ -135,6 +137,14 @@ def _end_to_end(builder, pieces):
     return pieces[0]
 
 
+def _kept_whole(builder, register):
+    """Keep LLVM from doing the last shuffles anew for each half that is stored."""
+    if platform.machine().lower() not in ("x86_64", "amd64"):
+        return register
+    kind = ir.FunctionType(register.type, [register.type])
+    return builder.asm(kind, "", "=v,0", [register], False)
+
+
 def _row(context, builder, kinds, args, lane, row):
     """Return the address of the particle row that lane `lane` of a group names."""
     particles, indices, start = args[:3]
@@ -188,6 +198,7 @@ def scatter(typing, particles, indices, start, x, y, z, w):
         for part in range(PACK_PARTS):
             # The same transposition read the other way: field q of lane l is row l, entry q.
             registers = _transposed(builder, [field[part] for field in fields])
+            registers = [_kept_whole(builder, register) for register in registers]
             for q in range(_FIELDS):
                 for piece, lane in enumerate(_rows_of(part, q)):
                     entries = range(_FIELDS * piece, _FIELDS * piece + _FIELDS)
