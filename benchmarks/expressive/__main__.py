@@ -53,7 +53,9 @@ def measure(truths: Truths, seed: int | None, title: str) -> dict[str, object]:
     mean = float(np.mean([posed[name] for name in JUDGED]))
     flat = float(np.mean([linear[name] for name in JUDGED]))
     worst = min(JUDGED, key=lambda name: posed[name])
-    print(f"  mean of twelve   posed {mean:.3f}  linear {flat:.3f}  worst {worst} {posed[worst]:.3f}")
+    print(
+        f"  mean of twelve   posed {mean:.3f}  linear {flat:.3f}  worst {worst} {posed[worst]:.3f}"
+    )
     return {"mean": mean, "linear": flat, "shapes": shapes}
 
 

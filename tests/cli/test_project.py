@@ -11,7 +11,7 @@ from tests.cli.running import answer, asset, run
 
 
 def test_a_project_rigs_like_the_options_that_made_it(tmp_path: Path) -> None:
-    options = ("--profile", "faithful", "--shapes", "emotions")
+    options = ("--method", "vector", "--profile", "faithful", "--shapes", "emotions")
     project = tmp_path / "mine.json"
     result = run(
         *("project", "new", asset("head.obj"), "-o", project),

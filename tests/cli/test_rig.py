@@ -253,7 +253,18 @@ def test_a_word_that_does_not_exist_is_refused_with_the_choices(
 def test_the_profile_changes_the_shapes(tmp_path: Path) -> None:
     for profile in ("improved", "faithful"):
         out = tmp_path / f"{profile}.npz"
-        run("rig", "builtin", "-o", out, "--profile", profile, "--shapes", "emotions")
+        run(
+            "rig",
+            "builtin",
+            "-o",
+            out,
+            "-m",
+            "vector",
+            "--profile",
+            profile,
+            "--shapes",
+            "emotions",
+        )
     improved, faithful = (
         Rig.load(tmp_path / f"{name}.npz").target("joy").dense(builtin_head().vertex_count)
         for name in ("improved", "faithful")

@@ -83,7 +83,7 @@ def test_a_recipe_of_another_kind_is_refused(tmp_path: Path, reader) -> None:
 
 
 def test_parameters_go_on_top_of_the_profile() -> None:
-    project = Project(profile="faithful", parameters={"steps": 3.0})
+    project = Project(method="vector", profile="faithful", parameters={"steps": 3.0})
     face = face_of(project, builtin_head())
     assert isinstance(face, VectorFace)
     assert face.parameters.steps == 3
@@ -103,7 +103,7 @@ def test_parameters_go_on_top_of_the_profile() -> None:
 )
 def test_a_parameter_that_does_not_exist_or_fit_is_refused(parameters, sentence: str) -> None:
     with pytest.raises(ParameterError) as caught:
-        face_of(Project(parameters=parameters), builtin_head())
+        face_of(Project(method="vector", parameters=parameters), builtin_head())
     assert sentence in str(caught.value)
 
 

@@ -130,7 +130,7 @@ MethodOption = Annotated[
     typer.Option(
         "--method",
         "-m",
-        help="Method that poses the face.  [default: vector]",
+        help="Method that poses the face.  [default: layered]",
         rich_help_panel=_METHOD,
         show_default=False,
     ),

@@ -8,7 +8,7 @@ from risorius.layered.muscle_map import (
     read_muscle_map,
 )
 from risorius.layered.skull import Skull, builtin_skull, load_skull
-from risorius.layered.solve import Solved, solve_pose
+from risorius.layered.solve import Solved, landmark_target, solve_pose
 
 __all__ = [
     "LayeredFace",
@@ -17,6 +17,7 @@ __all__ = [
     "Solved",
     "builtin_skull",
     "default_muscle_map",
+    "landmark_target",
     "load_skull",
     "parse_muscle_map",
     "read_muscle_map",

@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-from risorius._check import FloatArray
+from risorius._check import FloatArray, IntArray
+from risorius.anatomy.jaw import JawPose
 from risorius.anatomy.mechanics import Mechanics
 from risorius.controls.control import Control, Pose, resolve_pose
 from risorius.controls.standard import MUSCLES, SINGLE_MUSCLES, muscle_controls
@@ -15,12 +17,14 @@ from risorius.head.head import Head
 from risorius.layered.binding import bind_muscles
 from risorius.layered.contact import Contact
 from risorius.layered.correctives import Correctives
-from risorius.layered.fibres import lay_fibres
+from risorius.layered.fibres import contract, lay_fibres
+from risorius.layered.muscle import SheetAction
 from risorius.layered.muscle_map import MuscleMap, default_muscle_map
 from risorius.layered.pulls import Pull
 from risorius.layered.skin import Skin, build_skin, mirror_partners
 from risorius.layered.skull import Skull, builtin_skull
 from risorius.layered.skull_fit import FittedSkull, fit_skull
+from risorius.layered.solve import Solved, solve_pose
 
 __all__ = ["LayeredFace"]
 
@@ -149,6 +153,52 @@ class LayeredFace:
     def pose(self, pose: Pose) -> FloatArray:
         """Return the posed positions (n, 3) [mm, canonical frame] of every input vertex."""
         return self.head.positions + self.displace(pose)
+
+    def solve(
+        self,
+        target: FloatArray,
+        vertices: IntArray,
+        *,
+        weights: FloatArray | None = None,
+        together: bool = False,
+    ) -> Solved:
+        """Find the controls that come nearest to a shape; see `solve_pose`.
+
+        Parameters
+        ----------
+        target : (k, 3) float64
+            Wanted displacement [mm, canonical frame].
+        vertices : (k,) int32
+            Input vertices that it belongs to; `landmark_target` makes both from landmarks.
+        weights : (k,) float64, optional
+            Importance of each vertex.
+        together : bool
+            Move left and right alike.
+        """
+        return solve_pose(self, target, vertices, weights=weights, together=together)
+
+    def posed_fibres(self, pose: Pose) -> dict[str, FloatArray]:
+        """Return the fibres (h, w, 3) of every sheet in a pose, by muscle and side [mm].
+
+        Shortened along themselves and carried by the jaw; for drawing.
+        """
+        values = resolve_pose(self.controls, pose).values
+        jaw = JawPose(values["jaw_pitch"], values["jaw_yaw"], values["jaw_protrusion"])
+        tree = cKDTree(self.skin.positions)
+        result: dict[str, FloatArray] = {}
+        for name, fibres in self.fibres.items():
+            muscle = self.muscle_map.by_name[name.removesuffix("_l").removesuffix("_r")]
+            control = muscle.name if muscle.together else name
+            amount = muscle.shortening * values.get(control, 0.0)
+            still = muscle.action.fixed_point if isinstance(muscle.action, SheetAction) else 0.0
+            moved = contract(fibres, amount, fixed_point=still) if amount else fibres
+            if not jaw.at_rest:
+                near = tree.query(fibres.reshape(-1, 3))[1]
+                share = self.mechanics.jaw_share[near]
+                flat = self.mechanics.jaw.move(moved.reshape(-1, 3), jaw, share=share)
+                moved = flat.reshape(moved.shape)
+            result[name] = moved
+        return result
 
 
 def _controls(names: tuple[str, ...]) -> tuple[Control, ...]:

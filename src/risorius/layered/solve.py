@@ -11,15 +11,37 @@ from scipy.optimize import lsq_linear
 from risorius._check import FloatArray, IntArray
 from risorius.controls.control import Control, Pose
 from risorius.errors import ShapeError
+from risorius.landmarks.sides import require
 from risorius.rig.face import Face
 
-__all__ = ["Solved", "solve_pose"]
+__all__ = ["Solved", "landmark_target", "solve_pose"]
 
 # Groups whose controls take part, and the step of each for a difference quotient.
 _STEPS = {"muscle": 1.0, "lid": 1.0, "jaw": 6.0}
 _RIDGE = 1e-6
 _ROUNDS = 4
 _HALVINGS = 3
+
+
+def landmark_target(face: Face, places: Mapping[str, FloatArray]) -> tuple[FloatArray, IntArray]:
+    """Return displacements (k, 3) [mm] and input vertices (k,) that bring landmarks to `places`.
+
+    Parameters
+    ----------
+    face : Face
+    places : mapping of str to (3,) float64
+        Where landmarks shall be [mm, canonical frame].
+
+    Raises
+    ------
+    LandmarkError
+        If the head has no landmark of a name.
+    """
+    head = face.head
+    require(head.landmarks, tuple(places), purpose="the target")
+    vertices = np.array([head.landmarks.vertex(name) for name in places], np.int32)
+    moved = [np.asarray(place) - head.landmarks.position(name) for name, place in places.items()]
+    return np.array(moved), vertices
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from risorius.anatomy.mechanics import Mechanics
 from risorius.errors import ParameterError
 from risorius.head.head import Head
 from risorius.layered.face import LayeredFace
+from risorius.layered.faithful import FaithfulFace
 from risorius.layered.muscle_map import MuscleMap, default_muscle_map, read_muscle_map
 from risorius.layered.skull import Skull, builtin_skull, load_skull
 from risorius.project.project import Project
@@ -48,17 +49,15 @@ def layered_face(project: Project, head: Head, mechanics: Mechanics | None) -> F
     Raises
     ------
     ParameterError
-        If the project asks for a profile or a parameter that the method does not have.
+        If the project asks for a parameter that the method does not have.
     """
     if project.parameters:
         raise ParameterError(
             f"parameters: the method {project.method!r} has no {next(iter(project.parameters))!r}; "
             "its parameters stand in the muscle map (--muscle-map FILE)"
         )
-    if project.profile != "improved":
-        raise ParameterError(
-            f"profile: the method 'layered' has no {project.profile!r} profile yet; use improved"
-        )
     muscle_map = muscle_map_of(project)
     skull = skull_of(project, muscle_map)
+    if project.profile == "faithful":
+        return FaithfulFace.build(head, muscle_map, skull=skull, mechanics=mechanics)
     return LayeredFace.build(head, muscle_map, skull=skull, mechanics=mechanics)

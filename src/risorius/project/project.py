@@ -65,7 +65,7 @@ class Project:
     axes: str | None = None
     parts: Mapping[str, str] = field(default_factory=dict[str, str])
     flip_landmarks: bool = False
-    method: str = "vector"
+    method: str = "layered"
     profile: str = "improved"
     parameters: Mapping[str, float | str] = field(default_factory=dict[str, float | str])
     vector_set: Path | None = None

@@ -1,4 +1,5 @@
 # pyright: basic
+# ruff: noqa: PLR0913, PLR0917
 """How far points must move to keep their distance from a convex solid."""
 
 import math
