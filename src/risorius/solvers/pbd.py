@@ -278,13 +278,12 @@ def _failure(model: Model, run: Run, start: FloatArray, sweeps: int) -> SolverEr
 
 
 def warm_up() -> None:
-    """Compile every kernel, or load it from the cache; a few seconds the first time.
+    """Compile the float32 kernels, or load them from the cache; some ten seconds the first time.
 
     For programs that want to hide the wait: call it from a thread while something else goes on.
     """
     positions = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], float)
     faces = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)], np.int32)
     model = Model(positions, surface_constraints(TriMesh(positions, faces)))
-    for path in ("simd", "scalar"):
-        Solver(path=path).settle(model, State.at_rest(model))
+    Solver().settle(model, State.at_rest(model))
     Solver().settle(model, State.at_rest(model, pose_count=1))
