@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from risorius.cloning.landmark_pairs import pair_landmarks
 from risorius.cloning.lid_contact import EyeClearance, LidContact
 from risorius.cloning.lip_contact import LipContact
 from risorius.cloning.parameters import CloneParameters
-from risorius.cloning.parts import PartCarrier, carriers
+from risorius.cloning.parts import PartCarrier, PartMotion, carriers
 from risorius.cloning.subject import Subject
 from risorius.errors import MeshError, ShapeError
 from risorius.head.head import Head
@@ -138,7 +138,7 @@ class Cloning:
         with clock.stage("parts"):
             for shape in range(len(ours)):
                 target.skin.spread(made[shape], result[shape])
-                self._carry_parts(given[shape], made[shape], result[shape])
+                self._carry_parts(given[shape], ours[shape], made[shape], result[shape])
         self.seconds.update(clock.seconds)
         return target.frame.vectors_to_input(result)
 
@@ -154,11 +154,12 @@ class Cloning:
     def _restore_lids(self, ours: FloatArray, made: FloatArray) -> None:
         if not self.parameters.lid_contact:
             return
-        for side in (side for side in self.source.lids if side in self.target.lids):
-            contact = LidContact(self.source, self.target, side)
+        target = replace(self.target, lids=self.skin.lids)
+        for side in self.skin.lids:
+            contact = LidContact(self.source, target, side)
             clear = None
-            if EyeClearance.possible(self.target, side):
-                clear = EyeClearance(self.target, side)
+            if EyeClearance.possible(target, side):
+                clear = EyeClearance(target, side)
             allowed = None
             if EyeClearance.possible(self.source, side):
                 allowed = EyeClearance(self.source, side)
@@ -187,12 +188,15 @@ class Cloning:
             depth = np.maximum(depth - taken[clear.vertices], 0.0)
         clone[clear.vertices] += depth[:, None] * clear.outwards(clone)
 
-    def _carry_parts(self, given: FloatArray, skin: FloatArray, result: FloatArray) -> None:
+    def _carry_parts(
+        self, given: FloatArray, ours: FloatArray, skin: FloatArray, result: FloatArray
+    ) -> None:
         rest = self.target.mesh.positions
         for carrier in self.parts.values():
             origin = carrier.origin
             deltas = None if origin is None else given[origin.first_source()]
-            moved = carrier.carry(self.skin.pairs.similarity, deltas, skin, rest)
+            motion = PartMotion(deltas, ours, skin, rest)
+            moved = carrier.carry(self.skin.pairs.similarity, motion)
             moved[np.linalg.norm(moved, axis=1) <= self.parameters.still] = 0.0
             carrier.part.spread(moved, result)
 

@@ -10,6 +10,7 @@ from scipy.sparse import csr_matrix
 
 from risorius._check import BoolArray, FloatArray
 from risorius.cloning.landmark_pairs import LandmarkPairs
+from risorius.cloning.lid_trace import trusted_lids
 from risorius.cloning.mapping import Mapping, map_skin
 from risorius.cloning.parameters import CloneParameters
 from risorius.cloning.refinement import ray_mapping, refine
@@ -17,9 +18,12 @@ from risorius.cloning.registration import register
 from risorius.cloning.rough_fit import rough_fit
 from risorius.cloning.subject import Subject
 from risorius.mesh.core import TriMesh
+from risorius.mesh.lids import LidMargins
 from risorius.warp.rbf import RbfWarp
 
 __all__ = ["Correspondence", "SkinCarrier", "correspond"]
+
+_EYES = {"l": "left", "r": "right"}
 
 
 class SkinCarrier(Protocol):
@@ -45,6 +49,8 @@ class Correspondence:
         Distance of its vertices to the target; NaN where unknown [mm].
     mapping : Mapping
     carry : SkinCarrier
+    lids : mapping of str to LidMargins
+        The target's, by side, where both heads have them.
     notes : tuple of str
     """
 
@@ -54,6 +60,7 @@ class Correspondence:
     residual: FloatArray
     mapping: Mapping
     carry: SkinCarrier
+    lids: dict[str, LidMargins]
     notes: tuple[str, ...]
 
 
@@ -86,12 +93,15 @@ def correspond(
         change = fit.warp.jacobian(rest.positions) - np.eye(3)
         linear = (np.eye(3) + parameters.local_scale * change) @ linear
     carry = _Improved(mapping, matrix, linear, rest, target.mesh.positions, parameters)
-    left = [n for n in source.lines() if n in target.lines() and n not in fit.lines]
+    lids = trusted_lids(source, target, found.mesh.positions, fit.lines)
     notes = [
-        f"{name.replace('_', ' ')}: the eye's landmarks do not fit the others; matched by the skin"
-        for name in left
+        f"{_EYES[side]} eye: its landmarks do not fit the others; the lids are matched by the skin"
+        for side in lids
+        if f"lid_upper_{side}" not in fit.lines
     ]
-    return Correspondence(pairs, fit.warp, found.mesh, found.residual, mapping, carry, tuple(notes))
+    return Correspondence(
+        pairs, fit.warp, found.mesh, found.residual, mapping, carry, lids, tuple(notes)
+    )
 
 
 def _faithful(
@@ -112,7 +122,8 @@ def _faithful(
         mapping, matrix, linear, found.rest, fitted, found.warp, target.mesh.positions, parameters
     )
     said = f"{found.centre_count} centres after {found.pass_count} passes, rays {found.ray:.1f} mm"
-    return Correspondence(pairs, found.warp, fitted, residual, mapping, carry, (said,))
+    lids = {side: found_lids for side, found_lids in target.lids.items() if side in source.lids}
+    return Correspondence(pairs, found.warp, fitted, residual, mapping, carry, lids, (said,))
 
 
 @dataclass(frozen=True, eq=False)

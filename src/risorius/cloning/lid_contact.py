@@ -7,19 +7,19 @@ import numpy as np
 from risorius._check import FloatArray, IntArray
 from risorius.anatomy.radial_surface import RadialSurface
 from risorius.anatomy.smooth_step import smooth_step
-from risorius.cloning.polyline import interpolated, shares
+from risorius.cloning.local_field import LocalField
+from risorius.cloning.polyline import interpolated, line_trust, shares
 from risorius.cloning.subject import Subject
 from risorius.head.part_geometry import fit_sphere
-from risorius.mesh.laplacian import SmoothField
 from risorius.mesh.lids import LidMargins
 
 __all__ = ["EyeClearance", "LidContact"]
 
 _PLACES = np.linspace(0.06, 0.94, 15)
 _REACH, _LENGTH, _BEND = 1.3, 0.5, 0.25
-_STIFF = 60.0
-# From no closing to closed by this share the correction sets in.
-_ONSET = 0.3
+# The correction sets in where less than the first share of the gap is left, fully below the
+# second: lids that close, not lids that squint.
+_ONSET, _FULL = 0.5, 0.2
 _LEAST = 5e-3
 # Distance that lids keep from the eyeball unless they are nearer at rest [mm].
 _CLEARANCE = 0.25
@@ -38,13 +38,13 @@ class LidContact:
     def __init__(self, source: Subject, target: Subject, side: str) -> None:
         self._source = _Margins(source, source.lids[side])
         self._target = _Margins(target, target.lids[side])
+        self._trust = line_trust(self._source.lines, self._target.lines)
         margins = target.lids[side]
-        stiffness = np.where(margins.distance < _REACH * margins.height, 0.0, _STIFF)
-        stiffness[self._target.lines[0]] = _STIFF
-        stiffness[self._target.lines[1]] = _STIFF
-        self._field = SmoothField(
+        near = np.asarray(margins.distance < _REACH * margins.height)
+        self._field = LocalField(
             target.mesh,
-            stiffness,
+            near,
+            self._target.lines,
             length=_LENGTH * margins.height,
             bend=_BEND * margins.height,
         )
@@ -61,7 +61,7 @@ class LidContact:
         """
         wanted, travel = self._source.gap_shares(ours)
         made, _ = self._target.gap_shares(theirs)
-        onset = smooth_step((1.0 - wanted) / _ONSET)
+        onset = self._trust * smooth_step((_ONSET - wanted) / (_ONSET - _FULL))
         missing = onset * (wanted - made) * self._target.opening
         if np.abs(missing).max() < _LEAST:
             return None
@@ -73,7 +73,9 @@ class LidContact:
             step *= np.clip(np.minimum(place, 1.0 - place) / _PLACES[0], 0.0, 1.0)
             direction = interpolated(self._target.direction, _PLACES, place)
             goal[line] = step[:, None] * direction
-        return self._field.solve(goal)
+        result = np.zeros_like(theirs)
+        result[self._field.vertices] = self._field.solve(goal)
+        return result
 
 
 class _Margins:

@@ -5,15 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from risorius._check import FloatArray, IntArray
-from risorius.cloning.polyline import interpolated, shares
+from risorius.cloning.local_field import LocalField
+from risorius.cloning.polyline import interpolated, line_trust, shares
 from risorius.cloning.subject import Subject
-from risorius.mesh.laplacian import SmoothField
 
 __all__ = ["LipContact"]
 
 # How far the correction reaches from the lines, and how smooth it is, as shares of the width.
 _REACH, _LENGTH, _BEND = 0.45, 0.25, 0.1
-_STIFF = 60.0
 # Corrections below this do nothing [mm].
 _LEAST = 1e-3
 # Shares at the ends of the lines over which the correction fades: the corners touch anyway.
@@ -38,14 +37,17 @@ class LipContact:
         assert target.lips is not None
         self._source = (source.lips.slit.upper, source.lips.slit.lower)
         self._target = (target.lips.slit.upper, target.lips.slit.lower)
+        self._trust = line_trust(self._source, self._target)
         self._source_places = [shares(source.mesh.positions[line]) for line in self._source]
         self._places = [shares(target.mesh.positions[line]) for line in self._target]
         lips = target.lips
-        stiffness = np.where(lips.distance > _REACH * lips.width, _STIFF, 0.0)
-        for line in self._target:
-            stiffness[line] = _STIFF
-        self._field = SmoothField(
-            target.mesh, stiffness, length=_LENGTH * lips.width, bend=_BEND * lips.width
+        near = np.asarray(lips.distance < _REACH * lips.width)
+        self._field = LocalField(
+            target.mesh,
+            near,
+            self._target,
+            length=_LENGTH * lips.width,
+            bend=_BEND * lips.width,
         )
 
     def correct(self, ours: FloatArray, theirs: FloatArray) -> FloatArray:
@@ -67,7 +69,9 @@ class LipContact:
         result = np.zeros_like(theirs)
         if len(active):
             solved = self._field.solve(goal[:, active].reshape(n, -1))
-            result[active] = solved.reshape(n, len(active), 3).transpose(1, 0, 2)
+            rows = self._field.vertices
+            moved = solved.reshape(len(rows), len(active), 3).transpose(1, 0, 2)
+            result[np.ix_(active, rows)] = moved
         return result
 
     def _goals(self, ours: FloatArray, theirs: FloatArray) -> list[tuple[IntArray, FloatArray]]:
@@ -86,5 +90,5 @@ class LipContact:
             size = [np.linalg.norm(part, axis=1) for part in moved]
             share = size[number] / np.maximum(size[0] + size[1], 1e-12)
             fade = np.clip(np.minimum(place, 1.0 - place) / _END, 0.0, 1.0)
-            goals.append((line, sign * (share * fade)[:, None] * missing))
+            goals.append((line, sign * self._trust * (share * fade)[:, None] * missing))
         return goals

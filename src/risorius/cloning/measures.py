@@ -53,8 +53,15 @@ def absolute_error(rest: FloatArray, truth: FloatArray, made: FloatArray) -> flo
 
 
 def motion_error(truth: FloatArray, made: FloatArray) -> float:
-    """Return 100 sum |dS - dT| / sum |dS| for displacements (n, 3), in per cent.
+    """Return 100 sum |dS - dT| / sum |dS|, in per cent.
 
+    Parameters
+    ----------
+    truth, made : (n, 3) float64
+        Displacements dS and dT [one unit].
+
+    Notes
+    -----
     0 where neither moves, infinite where only `made` does.
     """
     _require_same(truth, made)
@@ -65,8 +72,15 @@ def motion_error(truth: FloatArray, made: FloatArray) -> float:
 
 
 def direction_cosine(truth: FloatArray, made: FloatArray) -> float:
-    """Return the mean cosine between displacements (n, 3), weighted by the truth's length.
+    """Return the mean cosine between displacements, weighted by the truth's length.
 
+    Parameters
+    ----------
+    truth, made : (n, 3) float64
+        Displacements [one unit].
+
+    Notes
+    -----
     Vertices below 5 % of the largest motion do not count; those that `made` leaves at rest
     count 0. 1 where nothing moves.
     """

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
+from scipy.spatial import cKDTree
 
 from risorius._check import FloatArray, IntArray
 from risorius.cloning.subject import Subject
@@ -30,13 +31,23 @@ _TURN = 1.5
 # The places of two joined vertices are torn apart if the way between them along the source's
 # skin is longer than this many times their edge, and by more than the second number [mm].
 _TORN, _TORN_LEAST = 1.8, 0.45
-# Query points that are compared with all faces at once.
-_BLOCK = 256
+# Faces with the nearest middles that are compared, and query points at a time.
+_CANDIDATES, _BLOCK = 96, 512
 
 
 @dataclass(frozen=True, eq=False)
 class CornerPlaces:
-    """Places (k) on source faces; see `risorius.spatial.ClosestPoints`."""
+    """Places on source faces, as `risorius.spatial.ClosestPoints` has them.
+
+    Parameters
+    ----------
+    face : (k,) int32
+    bary : (k, 3) float64
+    distance : (k,) float64
+        [mm].
+    positions : (k, 3) float64
+        [mm].
+    """
 
     face: IntArray
     bary: FloatArray
@@ -89,27 +100,30 @@ class MouthCorners:
         """Return the vertices and their places for target `points` (n, 3) on a moved source."""
         queries, facing = points[self.vertices], normals[self.vertices]
         turns = vertex_normals(surface.positions, surface.faces)[surface.faces[self.faces]]
-        corners = surface.positions[surface.faces[self.faces]]
-        marks = self.given[surface.faces[self.faces]]
+        faces = surface.faces[self.faces]
+        corners, marks = surface.positions[faces], self.given[faces]
         best = np.zeros(len(queries), np.int32)
         bary = np.zeros((len(queries), 3))
         distance, places = np.zeros(len(queries)), np.zeros((len(queries), 3))
-        f = len(self.faces)
+        f = min(_CANDIDATES, len(self.faces))
+        tree = cKDTree(corners.mean(axis=1)) if f else None
         for start in range(0, len(queries), _BLOCK):
             rows = np.arange(start, min(start + _BLOCK, len(queries)))
-            points_twice = np.repeat(queries[rows], f, axis=0)
-            shares = closest_bary(points_twice, np.tile(corners, (len(rows), 1, 1)))
-            shares = shares.reshape(len(rows), f, 3)
-            there = np.einsum("qfc,fcj->qfj", shares, corners)
+            assert tree is not None
+            near = np.asarray(tree.query(queries[rows], k=f)[1]).reshape(len(rows), f)
+            shares = closest_bary(
+                np.repeat(queries[rows], f, axis=0), corners[near].reshape(-1, 3, 3)
+            ).reshape(len(rows), f, 3)
+            there = np.einsum("qfc,qfcj->qfj", shares, corners[near])
             apart = np.linalg.norm(there - queries[rows, None], axis=2)
-            mark = np.einsum("qfc,fcj->qfj", shares, marks)
+            mark = np.einsum("qfc,qfcj->qfj", shares, marks[near])
             astray = np.linalg.norm(mark - self.wanted[rows, None], axis=2)
-            turn = np.einsum("qfc,fcj->qfj", shares, turns) - facing[rows, None]
+            turn = np.einsum("qfc,qfcj->qfj", shares, turns[near]) - facing[rows, None]
             turned = np.linalg.norm(turn, axis=2)
             cost = apart**2 + (_SKIN * astray) ** 2 + (_TURN * turned) ** 2
             chosen = cost.argmin(axis=1)
             at = (np.arange(len(rows)), chosen)
-            best[rows], bary[rows] = chosen, shares[at]
+            best[rows], bary[rows] = near[at], shares[at]
             distance[rows], places[rows] = apart[at], there[at]
         face = self.faces[best] if f else best
         return self.vertices, CornerPlaces(face, bary, distance, places)

@@ -15,7 +15,7 @@ from risorius.head.part_geometry import fit_sphere
 from risorius.warp.rbf import RbfWarp
 from risorius.warp.similarity import Similarity, fit_similarity
 
-__all__ = ["PartCarrier", "carriers"]
+__all__ = ["PartCarrier", "PartMotion", "carriers"]
 
 _ON_SKIN = ("lashes_left", "lashes_right", "attached")
 # What a part takes its motion from if the source has none of its kind.
@@ -29,6 +29,26 @@ _WITH_CHIN = ("teeth_lower", "tongue")
 # Skin around the chin that tells the jaw's motion, as a share of the face's height.
 _CHIN = 0.07
 _NEIGHBOURS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class PartMotion:
+    """What is known of one shape when a part is carried.
+
+    Parameters
+    ----------
+    part : (j, 3) float64 or None
+        Displacement of the source's part [mm].
+    source_skin : (v, 3) float64
+        Displacement of the source's skin [mm].
+    target_skin, target_rest : (n, 3) float64
+        Displacement and rest positions of the target's skin [mm].
+    """
+
+    part: FloatArray | None
+    source_skin: FloatArray
+    target_skin: FloatArray
+    target_rest: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +67,9 @@ class PartCarrier:
         Of the source.
     skin : Follower or None
         Target skin that carries the part; used where `origin` is None.
+    under : Follower or None
+        Source skin under the source's part, where both lie on the skin: what the part does
+        beyond following it is taken over as well.
     is_rigid : bool
         Whether only the rigid motion of `skin`'s vertices is taken over (a jaw by its chin).
     pivots : (2, 3) float64
@@ -58,46 +81,44 @@ class PartCarrier:
     part: Part
     origin: Part | None
     skin: Follower | None
+    under: Follower | None
     is_rigid: bool
     pivots: FloatArray
     nearest: IntArray
     weights: FloatArray
 
-    def carry(
-        self, similarity: Similarity, deltas: FloatArray | None, skin: FloatArray, rest: FloatArray
-    ) -> FloatArray:
-        """Return the displacement (k, 3) of the target's part [mm].
-
-        Parameters
-        ----------
-        similarity : Similarity
-            From the source's frame to the target's.
-        deltas : (j, 3) float64 or None
-            Displacement of the source's part [mm].
-        skin, rest : (n, 3) float64
-            Displacement and rest positions of the target's skin [mm].
-        """
-        points = self.part.mesh.positions
+    def carry(self, similarity: Similarity, motion: PartMotion) -> FloatArray:
+        """Return the displacement (k, 3) of the target's part [mm]."""
+        points, deltas = self.part.mesh.positions, motion.part
+        if self.skin is not None:
+            if self.is_rigid:
+                return self._with_chin(motion)
+            followed = self.skin.displace(motion.target_skin)
+            if self.under is None or deltas is None:
+                return followed
+            own = (deltas - self.under.displace(motion.source_skin)) @ similarity.linear.T
+            return followed + np.einsum("ks,ksj->kj", self.weights, own[self.nearest])
         if self.origin is None or deltas is None:
-            if self.skin is None:
-                return np.zeros_like(points)
-            if not self.is_rigid:
-                return self.skin.displace(skin)
-            used = np.unique(self.skin.vertices)
-            if not skin[used].any():
-                return np.zeros_like(points)
-            moved = fit_similarity(rest[used], rest[used] + skin[used], allow_scale=False)
-            return moved.apply(points) - points
+            return np.zeros_like(points)
         if not deltas.any():
             return np.zeros_like(points)
         start = self.origin.mesh.positions
-        motion = fit_similarity(start, start + deltas, allow_scale=False)
+        moved = fit_similarity(start, start + deltas, allow_scale=False)
         pivot, own = self.pivots
-        shift = motion.apply(pivot[None])[0] - pivot
-        turn = similarity.rotation @ motion.rotation @ similarity.rotation.T
-        left = (start + deltas - motion.apply(start)) @ similarity.linear.T
+        shift = moved.apply(pivot[None])[0] - pivot
+        turn = similarity.rotation @ moved.rotation @ similarity.rotation.T
+        left = (start + deltas - moved.apply(start)) @ similarity.linear.T
         rigid = (points - own) @ (turn - np.eye(3)).T + similarity.linear @ shift
         return rigid + np.einsum("ks,ksj->kj", self.weights, left[self.nearest])
+
+    def _with_chin(self, motion: PartMotion) -> FloatArray:
+        assert self.skin is not None
+        points = self.part.mesh.positions
+        used = np.unique(self.skin.vertices)
+        moved, rest = motion.target_skin[used], motion.target_rest[used]
+        if not moved.any():
+            return np.zeros_like(points)
+        return fit_similarity(rest, rest + moved, allow_scale=False).apply(points) - points
 
 
 def carriers(
@@ -110,7 +131,7 @@ def carriers(
         if kind == "skin":
             continue
         if kind in _ON_SKIN:
-            result[kind] = _on_skin(part, target, is_rigid=False)
+            result[kind] = _on_skin(part, source.head.part(kind), source, target, similarity)
             continue
         origin = source.head.part(kind)
         if origin is not None:
@@ -122,38 +143,52 @@ def carriers(
             laid = warp(similarity.apply(substitute.mesh.positions))
             result[kind] = _like(kind, part, substitute, laid)
         elif kind in _WITH_CHIN and "2.1" in target.head.landmarks:
-            result[kind] = _on_skin(part, target, is_rigid=True)
+            result[kind] = _with_chin(part, target)
             notes.append(f"{kind}: the source has none; it moves with the chin")
         elif kind != "other":
             notes.append(f"{kind}: the source has none; it stays at rest")
     return result, notes
 
 
-def _on_skin(part: Part, target: Subject, *, is_rigid: bool) -> PartCarrier:
+def _on_skin(
+    part: Part, origin: Part | None, source: Subject, target: Subject, similarity: Similarity
+) -> PartCarrier:
     seen = np.flatnonzero(~target.inside).astype(np.int32)
-    points = part.mesh.positions
-    if is_rigid:
-        chin = target.head.landmarks.position("2.1")
-        near = np.linalg.norm(target.mesh.positions[seen] - chin, axis=1)
-        close = seen[near < _CHIN * target.head.height]
-        seen = close if len(close) >= 4 else seen[np.argsort(near)[:12]]
-        points = target.mesh.positions[seen]
-    follower = follow_skin(points, target.mesh, only=seen)
-    none = np.zeros((0, _NEIGHBOURS))
-    return PartCarrier(
-        part, None, follower, is_rigid, np.zeros((2, 3)), none.astype(np.int32), none
-    )
+    skin = follow_skin(part.mesh.positions, target.mesh, only=seen)
+    if origin is None:
+        return PartCarrier(part, None, skin, None, False, np.zeros((2, 3)), *_nothing())
+    theirs = np.flatnonzero(~source.inside).astype(np.int32)
+    under = follow_skin(origin.mesh.positions, source.mesh, only=theirs)
+    nearest, weights = _neighbours(part, _fit_box(origin, part, similarity))
+    return PartCarrier(part, origin, skin, under, False, np.zeros((2, 3)), nearest, weights)
+
+
+def _with_chin(part: Part, target: Subject) -> PartCarrier:
+    seen = np.flatnonzero(~target.inside).astype(np.int32)
+    chin = target.head.landmarks.position("2.1")
+    away = np.linalg.norm(target.mesh.positions[seen] - chin, axis=1)
+    near = seen[away < _CHIN * target.head.height]
+    near = near if len(near) >= 4 else seen[np.argsort(away)[:12]]
+    skin = follow_skin(target.mesh.positions[near], target.mesh, only=near)
+    return PartCarrier(part, None, skin, None, True, np.zeros((2, 3)), *_nothing())
 
 
 def _like(kind: str, part: Part, origin: Part, laid: FloatArray) -> PartCarrier:
+    nearest, weights = _neighbours(part, laid)
+    pivots = np.stack([_pivot(kind, origin), _pivot(kind, part)])
+    return PartCarrier(part, origin, None, None, False, pivots, nearest, weights)
+
+
+def _nothing() -> tuple[IntArray, FloatArray]:
+    return np.zeros((0, _NEIGHBOURS), np.int32), np.zeros((0, _NEIGHBOURS))
+
+
+def _neighbours(part: Part, laid: FloatArray) -> tuple[IntArray, FloatArray]:
     count = min(_NEIGHBOURS, len(laid))
     distance, nearest = cKDTree(laid).query(part.mesh.positions, k=count)
-    distance = np.asarray(distance).reshape(-1, count)
-    weights = 1.0 / np.maximum(distance, 1e-9) ** 2
+    weights = 1.0 / np.maximum(np.asarray(distance).reshape(-1, count), 1e-9) ** 2
     weights /= weights.sum(axis=1, keepdims=True)
-    pivots = np.stack([_pivot(kind, origin), _pivot(kind, part)])
-    nearest = np.asarray(nearest, np.int32).reshape(-1, count)
-    return PartCarrier(part, origin, None, False, pivots, nearest, weights)
+    return np.asarray(nearest, np.int32).reshape(-1, count), weights
 
 
 def _pivot(kind: str, part: Part) -> FloatArray:

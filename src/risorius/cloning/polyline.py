@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 from risorius._check import FloatArray, IntArray
 
-__all__ = ["at_shares", "interpolated", "nearest_on_line", "nearest_on_segments", "shares"]
+__all__ = ["at_shares", "interpolated", "line_trust", "nearest_on_line", "nearest_on_segments", "shares"]
 
 
 def shares(points: FloatArray) -> FloatArray:
@@ -25,6 +27,15 @@ def at_shares(points: FloatArray, wanted: FloatArray) -> FloatArray:
 def interpolated(values: FloatArray, place: FloatArray, wanted: FloatArray) -> FloatArray:
     """Return `values` (k, d) given at shares `place` (k,), interpolated at `wanted` (q,)."""
     return np.stack([np.interp(wanted, place, column) for column in values.T], axis=1)
+
+
+def line_trust(ours: Sequence[IntArray], theirs: Sequence[IntArray]) -> float:
+    """Return how far the motion of our lines can correct that of theirs, 0 to 1.
+
+    Lines with far fewer vertices than theirs (a third and less) tell too little.
+    """
+    share = min(len(a) / len(b) for a, b in zip(ours, theirs))
+    return float(np.clip((share - 0.3) / 0.25, 0.0, 1.0))
 
 
 def nearest_on_line(points: FloatArray, line: FloatArray) -> FloatArray:

@@ -76,6 +76,14 @@ def refine(
 ) -> Refinement:
     """Fit the warp as published (thesis 6.2, spec 2.4 and 2.5, errata E5, E6, S1).
 
+    Parameters
+    ----------
+    source, target : Subject
+    pairs : LandmarkPairs
+    moving : (v,) bool
+        Source vertices that may become centres.
+    parameters : CloneParameters
+
     Notes
     -----
     With `parameters.smoothing` 0 the ray hits are interpolated exactly, as published, which

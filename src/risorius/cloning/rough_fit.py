@@ -19,12 +19,12 @@ __all__ = ["RoughFit", "rough_fit"]
 # Smoothing of the landmarks that is tried; the largest that predicts a left-out landmark within
 # a few per cent of the best is taken.
 _SMOOTHING = (0.005, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.0)
-_LIKE_BEST = 1.02
+_LIKE_BEST = 1.05
 _LINE_SMOOTHING = 0.02
 _SAMPLES = np.linspace(0.0, 1.0, 13)
 # Lid lines farther than this from where the other landmarks expect them, in eye widths, hang on
 # landmarks that are off; they do not count.
-_LID_MISS = 0.025
+_LID_MISS = 0.033
 # Centres nearer together than this are one [mm].
 _NEAREST = 0.5
 
