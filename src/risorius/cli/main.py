@@ -8,7 +8,18 @@ from typing import Annotated
 import typer
 
 from risorius import __version__
-from risorius.cli import check, clone, compare, demo, inspect, landmarks, project, render, rig
+from risorius.cli import (
+    bench,
+    check,
+    clone,
+    compare,
+    demo,
+    inspect,
+    landmarks,
+    project,
+    render,
+    rig,
+)
 from risorius.cli.exits import INTERRUPTED
 
 __all__ = ["app", "run"]
@@ -58,6 +69,7 @@ app.command("clone")(clone.clone)
 app.command("compare")(compare.compare)
 app.command("render")(render.render)
 app.command("landmarks")(landmarks.landmarks)
+app.command("bench")(bench.bench)
 app.add_typer(project.app, name="project")
 
 
