@@ -108,7 +108,10 @@ class FaithfulFace:
         drawn = lay_anatomy((muscle_map or default_muscle_map()).published, bones, p)
         anatomy = rebuilt(drawn, _fitted_bones(bones, fitted), scale=fitted.scale)
         anchors = bind_skin(anatomy, moving, fitted.scale, p)
-        influence = influence_map(moving, anchors, p.influence_reach * head.height)
+        influence = influence_map(
+            moving, anchors,
+            reach=p.influence_reach * head.height, jaw_reach=p.jaw_reach * head.height,
+        )  # fmt: skip
         places = anchors.places(anatomy.positions, anatomy.faces)
         skin = build_skin_model(moving, anchors, places, influence, p)
         names = tuple(dict.fromkeys(laid.control for laid in anatomy.muscles if laid.control))
@@ -207,12 +210,19 @@ class FaithfulFace:
 
     def _even_skin(self, values: Mapping[str, float]) -> FloatArray:
         moved = self._settled_skin(values)
-        if self.partner is None or not self.parameters.even:
-            return moved
+        if self.partner is not None and self.parameters.even:
+            moved = self._evened(moved, values, self.partner)
+        rest = self.head.skin.mesh.positions
+        teeth = self.teeth.moved(self.mechanics.jaw, self.jaw_of(values))
+        return teeth.pushed_out(rest + moved) - rest
+
+    def _evened(
+        self, moved: FloatArray, values: Mapping[str, float], partner: IntArray
+    ) -> FloatArray:
         controls = {control.name: control for control in self.controls}
         opposite = dict(mirrored(values, controls))
         other = moved if opposite == dict(values) else self._settled_skin(opposite)
-        return 0.5 * (moved + other[self.partner] * MIRROR)
+        return 0.5 * (moved + other[partner] * MIRROR)
 
     def _anatomy_at(self, values: Mapping[str, float]) -> FloatArray:
         contractions = self.muscles.contractions(values)
@@ -242,8 +252,7 @@ class FaithfulFace:
             contacts = teeth.contacts(positions[:n])
             if contacts is None:
                 break
-        moved = self.finished(positions[:n], values)
-        return teeth.pushed_out(rest + moved) - rest
+        return self.finished(positions[:n], values)
 
 
 def _fitted_bones(skull: Skull, fitted: FittedSkull) -> dict[str, FloatArray]:

@@ -86,9 +86,9 @@ class FaithfulParameters:
         Lid vertices that follow their margin by more than this share are moved by it alone.
     lid_hold : float
         Stiffness that the others are held with, times that share.
-    influence_reach : float
-        Distance along the skin from what hangs on muscle or jaw to where nothing moves, as share
-        of the head's height.
+    influence_reach, jaw_reach : float
+        Distance along the skin from what hangs on a muscle, or on the jaw, to where nothing
+        moves, as share of the head's height; the jaw reaches farther, or the neck folds under it.
     teeth_rounds : int
         How often contacts with the teeth are looked for in one pose.
     ramp_steps, ramp_sweeps : int
@@ -119,6 +119,7 @@ class FaithfulParameters:
     lid_pinned: float = 0.5
     lid_hold: float = 0.2
     influence_reach: float = 0.25
+    jaw_reach: float = 0.4
     teeth_rounds: int = 3
     ramp_steps: int = 5
     ramp_sweeps: int = 12
@@ -130,5 +131,5 @@ class FaithfulParameters:
             as_number(name, getattr(self, name), low=0.0, high=1.0)
         for name in ("ramp_steps", "ramp_sweeps", "teeth_rounds"):
             as_number(name, getattr(self, name), low=1)
-        for name in ("anchor_reach", "influence_reach"):
+        for name in ("anchor_reach", "influence_reach", "jaw_reach"):
             as_number(name, getattr(self, name), low=1e-6)

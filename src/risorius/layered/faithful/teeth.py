@@ -19,6 +19,7 @@ _DEEPEST = 3.0
 # How far from the mouth, in its widths, skin may meet teeth.
 _NEAR = 1.2
 _EPSILON = 1e-9
+_PUSHES = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +101,8 @@ class Teeth:
     def pushed_out(self, positions: FloatArray) -> FloatArray:
         """Return the skin (n, 3) with what is still inside put on the surface [mm]."""
         result = positions.copy()
-        for arch in self.arches:
+        # Leaving one row may end in the other.
+        for arch in self.arches * _PUSHES:
             distance, _ = arch.exits(result[arch.vertices])
             result[arch.vertices] += distance[:, None] * arch.forward
         return result
