@@ -23,7 +23,7 @@ from risorius.layered.muscle_map import MuscleMap, default_muscle_map
 from risorius.layered.pulls import Pull
 from risorius.layered.skin import Skin, build_skin, mirror_partners
 from risorius.layered.skull import Skull, builtin_skull
-from risorius.layered.skull_fit import FittedSkull, fit_skull
+from risorius.layered.skull_fit import FittedSkull, fit_skull, hidden_skin
 from risorius.layered.solve import Solved, solve_pose
 
 __all__ = ["LayeredFace"]
@@ -98,9 +98,7 @@ class LayeredFace:
         bones = skull or builtin_skull()
         moving = mechanics or Mechanics.build(head)
         partner = mirror_partners(head.skin.mesh)
-        hidden = moving.lips.inside.copy()
-        for margins in moving.margins.values():
-            hidden |= margins.slit.inside
+        hidden = hidden_skin(moving.lips, moving.margins)
         fitted = fit_skull(bones, head, symmetric=partner is not None, hidden=hidden)
         skin = build_skin(moving, fitted, partner)
         binding = bind_muscles(drawn, lay_fibres(drawn, bones), fitted, skin, moving)

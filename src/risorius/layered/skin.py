@@ -15,7 +15,7 @@ from risorius.anatomy.smooth_step import smooth_step
 from risorius.layered.mouth import Mouth, measure_mouth
 from risorius.layered.outwards import unit
 from risorius.layered.skull import dental_arches
-from risorius.layered.skull_fit import MIRROR, FittedSkull
+from risorius.layered.skull_fit import MIRROR, FittedSkull, hidden_skin
 from risorius.mesh.connectivity import edges
 from risorius.mesh.core import TriMesh
 from risorius.mesh.laplacian import cotangent_laplacian, mass
@@ -169,9 +169,7 @@ def build_skin(mechanics: Mechanics, fitted: FittedSkull, partner: IntArray | No
     head, lips = mechanics.head, mechanics.lips
     mesh, scale = head.skin.mesh, fitted.scale
     normals = vertex_normals(mesh.positions, mesh.faces)
-    hidden = lips.inside.copy()
-    for margins in mechanics.margins.values():
-        hidden |= margins.slit.inside
+    hidden = hidden_skin(lips, mechanics.margins)
     blank = np.zeros(mesh.vertex_count)
     mouth = measure_mouth(head, lips, scale)
     skin = Skin(

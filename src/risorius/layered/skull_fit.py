@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -10,16 +12,20 @@ from scipy.spatial import cKDTree
 from risorius._check import BoolArray, FloatArray
 from risorius.anatomy.template import SURE_LANDMARKS, builtin_head
 from risorius.errors import LandmarkError
+from risorius.head.eyes import find_head_lids
 from risorius.head.head import Head
+from risorius.head.mouth import find_head_lips
 from risorius.layered.outwards import unit
 from risorius.layered.skull import Skull
 from risorius.mesh.core import TriMesh
+from risorius.mesh.lids import LidMargins
+from risorius.mesh.lips import LipSides
 from risorius.mesh.normals import vertex_normals
 from risorius.spatial.raycast import Scene
 from risorius.warp.rbf import RbfWarp
 from risorius.warp.similarity import Similarity, fit_similarity
 
-__all__ = ["FittedSkull", "fit_skull"]
+__all__ = ["MIRROR", "Carry", "FittedSkull", "fit_skull", "hidden_skin"]
 
 MIRROR = np.array([-1.0, 1.0, 1.0])
 
@@ -139,9 +145,9 @@ def _ray_pairs(
 def _pushed_in(
     bone: TriMesh, points: FloatArray, head: Head, hidden: BoolArray, scale: float
 ) -> TriMesh:
-    template = builtin_head().skin.mesh
-    own, _, _ = _Skin(template, np.zeros(template.vertex_count, bool)).depths(bone.positions)
-    least = np.clip(_KEEP * own * scale, _LEAST * scale, _MOST * scale)
+    own, _, _ = _template_skin().depths(bone.positions)
+    # Bone that is shallower in its own head (nose, orbit) has no more to keep than that.
+    least = scale * np.clip(_KEEP * own, np.minimum(own, _LEAST), _MOST)
     skin = _Skin(head.skin.mesh, hidden)
     for _ in range(_ROUNDS):
         depth, normal, distance = skin.depths(points)
@@ -167,3 +173,17 @@ class _Skin:
         foot = self._positions[nearest].mean(axis=1)
         depth = np.einsum("qd,qd->q", foot - points, normal)
         return depth, normal, np.asarray(distance)[:, 0]
+
+
+@cache
+def _template_skin() -> _Skin:
+    head = builtin_head()
+    return _Skin(head.skin.mesh, hidden_skin(find_head_lips(head), find_head_lids(head)))
+
+
+def hidden_skin(lips: LipSides, margins: Mapping[str, LidMargins]) -> BoolArray:
+    """Return the mask (n,) of the skin that lies inside: mouth bag, eye sockets."""
+    hidden = lips.inside.copy()
+    for margin in margins.values():
+        hidden |= margin.slit.inside
+    return hidden

@@ -13,7 +13,7 @@ from numba import njit
 
 __all__ = ["best_turns", "turn_forces"]
 
-_ROUNDS = 8
+_ROUNDS = 24
 # The torque shrinks fast: what is left after a step this small does not show [rad].
 _STILL = 1e-4
 
