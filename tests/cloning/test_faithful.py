@@ -42,6 +42,7 @@ def test_refining_brings_the_skins_together_and_stops() -> None:
     assert found.misses[-1] < 0.005 * other_head().height
 
 
+@pytest.mark.filterwarnings("ignore:unit. eyes")
 def test_rays_are_a_share_of_the_target_s_face_and_shrink_with_it() -> None:
     target = subjects()[1]
     marks = target.head.landmarks

@@ -85,8 +85,10 @@ class Cloning:
         parameters = parameters or CloneParameters()
         clock = _Clock(progress)
         with clock.stage("lips+lids"):
-            ours, theirs = Subject.of(source, "source"), Subject.of(target, "target")
-            pairs = pair_landmarks(ours, theirs)
+            pairs = pair_landmarks(Subject.bare(source), Subject.bare(target))
+            turn = pairs.similarity.rotation
+            ours = Subject.of(source, "source")
+            theirs = Subject.of(target, "target", turn=turn)
         with clock.stage("correspondence"):
             moves = np.ones(ours.mesh.vertex_count, bool)
             if moving is not None:

@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from risorius._check import FloatArray, IntArray
+from risorius.cloning.polyline import line_trust
 from risorius.cloning.subject import Subject
 from risorius.mesh.connectivity import edges
 from risorius.mesh.core import TriMesh
@@ -83,13 +84,17 @@ class MouthCorners:
         nothing, none = np.zeros(0, np.int32), np.zeros((0, 2))
         if source.lips is None or target.lips is None:
             return MouthCorners(nothing, nothing, none, none)
+        ours, theirs = source.lips.slit, target.lips.slit
+        if line_trust((ours.upper, ours.lower), (theirs.upper, theirs.lower)) == 0.0:
+            # The corners of a coarse source are larger than the zone.
+            return MouthCorners(nothing, nothing, none, none)
         given, wanted = _signature(source), _signature(target)
         near = target.lips.to_corner < _ZONE * target.lips.width
         vertices = np.flatnonzero(near & np.isfinite(wanted).all(axis=1)).astype(np.int32)
-        ours = (source.lips.to_corner < _SOURCE_ZONE * source.lips.width) & np.isfinite(given).all(
+        inner = (source.lips.to_corner < _SOURCE_ZONE * source.lips.width) & np.isfinite(given).all(
             axis=1
         )
-        faces = np.flatnonzero(ours[source.mesh.faces].all(axis=1)).astype(np.int32)
+        faces = np.flatnonzero(inner[source.mesh.faces].all(axis=1)).astype(np.int32)
         if not len(faces):
             vertices = nothing
         return MouthCorners(vertices, faces, wanted[vertices], given)

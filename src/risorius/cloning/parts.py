@@ -135,13 +135,14 @@ def carriers(
             continue
         origin = source.head.part(kind)
         if origin is not None:
-            result[kind] = _like(kind, part, origin, _fit_box(origin, part, similarity))
+            laid = _fit_box(origin, part, similarity)
+            result[kind] = _like(kind, part, origin, laid, similarity.rotation)
             continue
         other = next((k for k in _INSTEAD.get(kind, ()) if source.head.part(k)), None)
         if other is not None:
             substitute = source.head.parts[other]
             laid = warp(similarity.apply(substitute.mesh.positions))
-            result[kind] = _like(kind, part, substitute, laid)
+            result[kind] = _like(kind, part, substitute, laid, similarity.rotation)
         elif kind in _WITH_CHIN and "2.1" in target.head.landmarks:
             result[kind] = _with_chin(part, target)
             notes.append(f"{kind}: the source has none; it moves with the chin")
@@ -173,9 +174,11 @@ def _with_chin(part: Part, target: Subject) -> PartCarrier:
     return PartCarrier(part, None, skin, None, True, np.zeros((2, 3)), *_nothing())
 
 
-def _like(kind: str, part: Part, origin: Part, laid: FloatArray) -> PartCarrier:
+def _like(kind: str, part: Part, origin: Part, laid: FloatArray, turn: FloatArray) -> PartCarrier:
     nearest, weights = _neighbours(part, laid)
-    pivots = np.stack([_pivot(kind, origin), _pivot(kind, part)])
+    # Both boxes stand as the source's does.
+    own = _pivot(kind, part.mesh.positions @ turn) @ turn.T
+    pivots = np.stack([_pivot(kind, origin.mesh.positions), own])
     return PartCarrier(part, origin, None, None, False, pivots, nearest, weights)
 
 
@@ -191,8 +194,7 @@ def _neighbours(part: Part, laid: FloatArray) -> tuple[IntArray, FloatArray]:
     return np.asarray(nearest, np.int32).reshape(-1, count), weights
 
 
-def _pivot(kind: str, part: Part) -> FloatArray:
-    points = part.mesh.positions
+def _pivot(kind: str, points: FloatArray) -> FloatArray:
     if kind.startswith("eye") and len(points) >= 12:
         centre, radius, residual = fit_sphere(points)
         if residual < 0.2 * radius:

@@ -9,7 +9,14 @@ from scipy.spatial import cKDTree
 
 from risorius._check import FloatArray, IntArray
 
-__all__ = ["at_shares", "interpolated", "line_trust", "nearest_on_line", "nearest_on_segments", "shares"]
+__all__ = [
+    "at_shares",
+    "interpolated",
+    "line_trust",
+    "nearest_on_line",
+    "nearest_on_segments",
+    "shares",
+]
 
 
 def shares(points: FloatArray) -> FloatArray:

@@ -22,7 +22,7 @@ from risorius.warp.rbf import RbfWarp
 __all__ = ["Refinement", "ray_length", "ray_mapping", "refine"]
 
 # Hits nearer than this share of the face's height teach nothing (unnecessary pairs).
-_TINY = 1e-5
+_TINY = 1e-4
 # Hits whose normal differs by more are on another sheet [deg].
 _TURNED = 60.0
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -49,16 +49,32 @@ class Subject:
     notes: tuple[str, ...]
 
     @staticmethod
-    def of(head: Head, name: str) -> Subject:
-        """Find lips and lids of a head; `name` is used in notes."""
+    def bare(head: Head) -> Subject:
+        """Return a head of which lips and lids are not known yet."""
+        return Subject(head, None, {}, ())
+
+    @staticmethod
+    def of(head: Head, name: str, *, turn: FloatArray | None = None) -> Subject:
+        """Find lips and lids of a head.
+
+        Parameters
+        ----------
+        head : Head
+        name : str
+            Used in notes.
+        turn : (3, 3) float64, optional
+            Rotation of this head against the one it is compared with. The contact line of the
+            lips is what turns inwards seen from the front; both heads must be seen alike.
+        """
+        seen = head if turn is None else _turned(head, turn.T)
         notes: list[str] = []
         lips = None
         try:
-            lips = find_head_lips(head)
+            lips = find_head_lips(seen)
         except (LandmarkError, MeshError) as error:
             notes.append(f"{name}: lips are cloned without sides: {error}")
         said: list[str] = []
-        lids = find_head_lids(head, notes=said)
+        lids = find_head_lids(seen, notes=said)
         notes.extend(f"{name}: {text}" for text in said)
         return Subject(head, lips, lids, tuple(notes))
 
@@ -148,3 +164,12 @@ class Subject:
         return [
             name for name in self.head.landmarks if name not in table or table[name].part == "skin"
         ]
+
+
+def _turned(head: Head, rotation: FloatArray) -> Head:
+    skin = head.skin
+    # Rounded, so that edges that stand upright on one head do so on its turned copy.
+    mesh = TriMesh(np.round(skin.mesh.positions @ rotation.T, 7), skin.mesh.faces)
+    parts = {**head.parts, "skin": replace(skin, mesh=mesh)}
+    marks = head.landmarks.at(head.positions @ rotation.T)
+    return replace(head, parts=parts, landmarks=marks)
