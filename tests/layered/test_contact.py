@@ -82,7 +82,7 @@ def test_shrinking_skin_swells_and_stretching_skin_thins() -> None:
 def test_the_best_turn_of_a_rigidly_turned_star_is_the_turn() -> None:
     random = np.random.default_rng(3)
     rest = random.standard_normal((7, 3))
-    angle = 0.8
+    angle = 0.3
     turn = np.array(
         [[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1.0]]
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -14,9 +13,10 @@ import numpy as np
 from risorius import _formats
 from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.template import builtin_head
-from risorius.errors import LandmarkError, MeshError, RisoriusWarning
+from risorius.errors import LandmarkError, MeshError
 from risorius.head.head import Head
 from risorius.landmarks.landmark_set import LandmarkSet, resolve
+from risorius.layered.bone_landmarks import read_bone_landmarks
 from risorius.mesh.core import TriMesh
 from risorius.mesh.polygon_mesh import PolygonMesh
 from risorius.spatial.hull import convex_hull
@@ -84,7 +84,7 @@ def load_skull(
     paths : tuple of Path
         One file with cranium and mandible, or one file each, in this order.
     landmarks : Path
-        Its bone landmarks, on the vertices of the files in their order.
+        Its bone landmarks; see `read_bone_landmarks`.
     marks : mapping of str to (3,) float64
         Bone landmarks of the skull that the muscle map was drawn on, in its space [mm].
 
@@ -98,12 +98,8 @@ def load_skull(
         If one file does not hold two bones.
     """
     meshes = [_formats.read_head(path)[0] for path in paths]
-    with warnings.catch_warnings():
-        # Bone landmarks are no feature points of a face, which the reader would warn of.
-        warnings.simplefilter("ignore", RisoriusWarning)
-        specs = _formats.read_landmarks(landmarks)
-        joined = _joined(meshes)
-        own = resolve(specs, joined)
+    joined = _joined(meshes)
+    own = resolve(read_bone_landmarks(landmarks, meshes), joined)
     bones = _bones(joined) if len(meshes) == 1 else _split(joined, meshes)
     source, target = _shared(own, marks, landmarks)
     place = fit_similarity(source, target)
