@@ -9,6 +9,7 @@ import numpy as np
 
 from risorius._check import FloatArray, IntArray
 from risorius.layered.faithful.anatomy import Anatomy, LaidMuscle
+from risorius.layered.faithful.contour import harmonic_fill
 from risorius.layered.faithful.parameters import FaithfulParameters
 from risorius.solvers.constraints import Bends, Constraints, Distances, Holds, Volume
 from risorius.solvers.model import Control, Model, State
@@ -27,12 +28,15 @@ class Layer:
     first, last : int
         Their vertices among all of the anatomy.
     model : Model
+    fills : tuple of (h w, k) float64
+        Per muscle how its bottom vertices follow the k that have targets.
     """
 
     muscles: tuple[LaidMuscle, ...]
     first: int
     last: int
     model: Model
+    fills: tuple[FloatArray, ...]
 
     @staticmethod
     def build(anatomy: Anatomy, muscles: list[LaidMuscle], p: FaithfulParameters) -> Layer:
@@ -43,6 +47,7 @@ class Layer:
         volumes: list[Volume] = []
         held: list[IntArray] = []
         stiffness: list[FloatArray] = []
+        fills: list[FloatArray] = []
         for laid in muscles:
             start = np.int32(laid.surface.first - first)
             own = anatomy.positions[laid.surface.first : laid.surface.last]
@@ -51,6 +56,12 @@ class Layer:
             bends.append(Bends(b.particles + start, b.rest, b.stiffness))
             volumes.append(Volume(v.faces + start, v.rest, v.stiffness))
             origin, fibres = laid.lines.held
+            known = np.concatenate([origin, fibres])
+            fills.append(
+                harmonic_fill(
+                    known, np.eye(len(known)), rows=laid.mesh.rows, columns=laid.mesh.columns
+                )
+            )
             is_ring = laid.muscle.kind == "sphincter"
             k = p.ring.position if is_ring else p.sheet.position
             held += [origin + start, fibres + start]
@@ -65,7 +76,8 @@ class Layer:
             volumes=tuple(volumes),
             holds=Holds(np.concatenate(held), np.concatenate(stiffness)),
         )
-        return Layer(tuple(muscles), first, last, Model(anatomy.positions[first:last], constraints))
+        model = Model(anatomy.positions[first:last], constraints)
+        return Layer(tuple(muscles), first, last, model, tuple(fills))
 
     def targets(
         self, positions: FloatArray, faces: IntArray, contractions: Mapping[str, float]
@@ -77,6 +89,28 @@ class Layer:
                 for laid in self.muscles
             ]
         )
+
+    def carried(self, positions: FloatArray, motion: FloatArray) -> FloatArray:
+        """Return the layer's vertices (n, 3) taken along by what lies beneath them [mm].
+
+        Vertices without a target of their own would stay behind, since the published net hardly
+        ties them to the others.
+
+        Parameters
+        ----------
+        positions : (n, 3) float64
+            Of the layer's vertices [mm].
+        motion : (k, 3) float64
+            Of the targets of relaxed muscles [mm].
+        """
+        result = positions.copy()
+        row = 0
+        for laid, fill in zip(self.muscles, self.fills):
+            count, start = fill.shape[1], laid.surface.first - self.first
+            own = fill @ motion[row : row + count]
+            result[start : start + 2 * len(own)] += np.concatenate([own, own])
+            row += count
+        return result
 
 
 class MovingMuscles:
@@ -127,20 +161,24 @@ class MovingMuscles:
         result = rest.copy()
         for stage in range(1, count + 1):
             share = stage / count
-            chosen = p.muscle_solver if stage == count else quick
+            before = result.copy()
             result[: self.bone_count] = rest[: self.bone_count] + share * (
                 bones[: self.bone_count] - rest[: self.bone_count]
             )
             wanted = {name: share * c for name, c in contractions.items()}
+            chosen = p.muscle_solver if stage == count else quick
             for layer in self.layers:
-                targets = layer.targets(result, self.anatomy.faces, wanted)
-                places = result[layer.first : layer.last]
+                places = self._carried(layer, before, result)
+                control = Control(layer.targets(result, self.anatomy.faces, wanted))
                 state = State(places, np.zeros_like(places))
-                settled = self._solver.settle(
-                    layer.model, state, Control(targets), parameters=chosen
-                )
+                settled = self._solver.settle(layer.model, state, control, parameters=chosen)
                 result[layer.first : layer.last] = settled.positions
         return result
+
+    def _carried(self, layer: Layer, before: FloatArray, now: FloatArray) -> FloatArray:
+        faces = self.anatomy.faces
+        motion = layer.targets(now, faces, {}) - layer.targets(before, faces, {})
+        return layer.carried(now[layer.first : layer.last], motion)
 
     def step(self, state: State, bones: FloatArray, contractions: Mapping[str, float]) -> State:
         """Return the state of all vertices after one published step, layer by layer.
