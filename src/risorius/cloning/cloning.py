@@ -99,7 +99,8 @@ class Cloning:
         said: list[str] = []
         with clock.stage("parts"):
             if parameters.parts:
-                parts, said = carriers(ours, theirs, pairs.similarity, skin.warp)
+                traced = replace(theirs, lids=skin.lids)
+                parts, said = carriers(ours, traced, pairs.similarity, skin.warp)
         notes = (*ours.notes, *theirs.notes, *skin.notes, *said)
         return Cloning(ours, theirs, parameters, skin, parts, notes, clock.seconds)
 

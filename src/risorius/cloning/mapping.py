@@ -28,7 +28,7 @@ _TURNED = 75.0
 _ROUNDING = 1e-9
 # Over what distance places are evened out: at least the first [mm], or a share of the source's
 # mean edge.
-_EVEN, _EVEN_EDGES = 3.0, 0.6
+_EVEN, _EVEN_EDGES = 3.0, 0.3
 
 
 @dataclass(frozen=True, eq=False)

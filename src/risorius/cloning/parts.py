@@ -12,6 +12,7 @@ from risorius.anatomy.follow import Follower, follow_skin
 from risorius.cloning.subject import Subject
 from risorius.head.part import Part
 from risorius.head.part_geometry import fit_sphere
+from risorius.mesh.connectivity import components
 from risorius.warp.rbf import RbfWarp
 from risorius.warp.similarity import Similarity, fit_similarity
 
@@ -29,6 +30,8 @@ _WITH_CHIN = ("teeth_lower", "tongue")
 # Skin around the chin that tells the jaw's motion, as a share of the face's height.
 _CHIN = 0.07
 _NEIGHBOURS = 4
+# Lashes whose vertices lie as near as this to the source's, laid over them, are the same [mm].
+_ALIKE = 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +134,8 @@ def carriers(
         if kind == "skin":
             continue
         if kind in _ON_SKIN:
-            result[kind] = _on_skin(part, source.head.part(kind), source, target, similarity)
+            own = source.head.part(kind)
+            result[kind] = _on_skin(kind, part, own, source, target, similarity)
             continue
         origin = source.head.part(kind)
         if origin is not None:
@@ -152,16 +156,41 @@ def carriers(
 
 
 def _on_skin(
-    part: Part, origin: Part | None, source: Subject, target: Subject, similarity: Similarity
+    kind: str,
+    part: Part,
+    origin: Part | None,
+    source: Subject,
+    target: Subject,
+    similarity: Similarity,
 ) -> PartCarrier:
-    seen = np.flatnonzero(~target.inside).astype(np.int32)
-    skin = follow_skin(part.mesh.positions, target.mesh, only=seen)
-    if origin is None:
-        return PartCarrier(part, None, skin, None, False, np.zeros((2, 3)), *_nothing())
-    theirs = np.flatnonzero(~source.inside).astype(np.int32)
-    under = follow_skin(origin.mesh.positions, source.mesh, only=theirs)
-    nearest, weights = _neighbours(part, _fit_box(origin, part, similarity))
-    return PartCarrier(part, origin, skin, under, False, np.zeros((2, 3)), nearest, weights)
+    skin = _follow(kind, part, target)
+    if origin is not None:
+        laid = _fit_box(origin, part, similarity)
+        nearest, weights = _neighbours(part, laid)
+        apart = np.linalg.norm(laid[nearest[:, 0]] - part.mesh.positions, axis=1)
+        if float(np.median(apart)) < _ALIKE:
+            under = _follow(kind, origin, source)
+            return PartCarrier(part, origin, skin, under, False, np.zeros((2, 3)), nearest, weights)
+    return PartCarrier(part, None, skin, None, False, np.zeros((2, 3)), *_nothing())
+
+
+def _follow(kind: str, part: Part, subject: Subject) -> Follower:
+    """Bind a part to the skin; each loose piece of the lashes to the margin of one lid."""
+    points = part.mesh.positions
+    margins = subject.lids.get({"lashes_left": "l", "lashes_right": "r"}.get(kind, ""))
+    if margins is None:
+        seen = np.flatnonzero(~subject.inside).astype(np.int32)
+        return follow_skin(points, subject.mesh, only=seen)
+    lines = (margins.slit.upper, margins.slit.lower)
+    bound = [follow_skin(points, subject.mesh, only=line, neighbours=3) for line in lines]
+    away = [cKDTree(subject.mesh.positions[line]).query(points)[0] for line in lines]
+    pieces = components(part.mesh.faces, len(points)).of_vertex
+    vertices, weights = bound[0].vertices.copy(), bound[0].weights.copy()
+    for piece in range(int(pieces.max(initial=-1)) + 1):
+        rows = pieces == piece
+        if np.mean(away[1][rows]) < np.mean(away[0][rows]):
+            vertices[rows], weights[rows] = bound[1].vertices[rows], bound[1].weights[rows]
+    return Follower(vertices, weights)
 
 
 def _with_chin(part: Part, target: Subject) -> PartCarrier:
