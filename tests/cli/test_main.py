@@ -20,6 +20,8 @@ VERBS = [
     ["clone"],
     ["compare"],
     ["render"],
+    ["play"],
+    ["convert"],
     ["landmarks"],
     ["bench"],
     ["project", "new"],

@@ -13,9 +13,11 @@ from risorius.cli import (
     check,
     clone,
     compare,
+    convert,
     demo,
     inspect,
     landmarks,
+    play,
     project,
     render,
     rig,
@@ -68,6 +70,8 @@ app.command("inspect")(inspect.inspect)
 app.command("clone")(clone.clone)
 app.command("compare")(compare.compare)
 app.command("render")(render.render)
+app.command("play")(play.play)
+app.command("convert")(convert.convert)
 app.command("landmarks")(landmarks.landmarks)
 app.command("bench")(bench.bench)
 app.add_typer(project.app, name="project")

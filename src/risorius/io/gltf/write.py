@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius._check import FloatArray
-from risorius.errors import FormatError
+from risorius.errors import FormatError, ShapeError
 from risorius.head.frame import Frame
 from risorius.io.atomic import write_bytes
 from risorius.io.finite import require_finite
@@ -21,18 +21,25 @@ from risorius.io.gltf.primitives import SOURCE_ATTRIBUTE
 from risorius.io.gltf.split import Primitive, Split, split
 from risorius.io.gltf.targets import add_targets
 from risorius.io.gltf.topology import CORNERS, SIZES, topology_to_json
+from risorius.io.gltf.track import WeightTrack, show_of_shapes, track_to_json
 from risorius.io.looks import look_of
 from risorius.io.rig_json import rig_to_json
 from risorius.rig.rig import Rig
 
 __all__ = ["glb_bytes", "write_glb"]
 
-_SECONDS_PER_SHAPE = 1.0
 _MILLIMETRES_PER_METRE = 1000.0
 _LARGEST_EXACT = 2**24  # whole numbers up to this survive float32
 
 
-def write_glb(rig: Rig, path: str | Path, *, animation: bool = False, metres: bool = False) -> None:
+def write_glb(
+    rig: Rig,
+    path: str | Path,
+    *,
+    animation: bool = False,
+    track: WeightTrack | None = None,
+    metres: bool = False,
+) -> None:
     """Write a rig as GLB 2.0.
 
     Parameters
@@ -41,6 +48,8 @@ def write_glb(rig: Rig, path: str | Path, *, animation: bool = False, metres: bo
     path : path
     animation : bool
         Add an animation that shows one shape after the other.
+    track : WeightTrack, optional
+        Add an animation that plays this instead.
     metres : bool
         Add a root node that turns the head to metres, +Y up and +Z forward, as glTF prescribes;
         without it the numbers are those of the input.
@@ -55,13 +64,25 @@ def write_glb(rig: Rig, path: str | Path, *, animation: bool = False, metres: bo
     Every part that moves in any target carries all of them in the same order, so that one weight
     moves all parts. Same rig, same bytes.
     """
-    data = glb_bytes(rig, str(path), animation=animation, metres=metres)
+    data = glb_bytes(rig, str(path), animation=animation, track=track, metres=metres)
     write_bytes(path, data)
 
 
-def glb_bytes(rig: Rig, where: str, *, animation: bool = False, metres: bool = False) -> bytes:
+def glb_bytes(
+    rig: Rig,
+    where: str,
+    *,
+    animation: bool = False,
+    track: WeightTrack | None = None,
+    metres: bool = False,
+) -> bytes:
     """Return the bytes that `write_glb` writes; `where` opens every message."""
     _require_writable(rig, where)
+    if track is not None and track.weights.shape[1] != len(rig.targets):
+        raise ShapeError(
+            f"track: has weights of {track.weights.shape[1]} targets, the rig has "
+            f"{len(rig.targets)}"
+        )
     parts = split(rig)
     writer = _Writer(rig, parts)
     meshes = [
@@ -83,8 +104,10 @@ def glb_bytes(rig: Rig, where: str, *, animation: bool = False, metres: bool = F
     if metres:
         nodes.append(_to_metres(rig.frame, list(range(len(nodes)))))
         content["scenes"][0]["nodes"] = [len(nodes) - 1]
-    if animation and moving:
-        content["animations"] = [writer.animation(moving)]
+    if track is None and animation:
+        track = show_of_shapes(len(rig.targets))
+    if track is not None and moving:
+        content["animations"] = [track_to_json(track, moving, writer.binary)]
     return writer.binary.glb(content)
 
 
@@ -140,24 +163,6 @@ class _Writer:
             sizes_view=self.binary.view(sizes, name=SIZES),
         )
         return {"risorius": {**rig_to_json(self._rig), "topology": topology}}
-
-    def animation(self, nodes: Sequence[int]) -> dict[str, Any]:
-        """Add an animation in which every shape comes and goes, one after the other."""
-        count = len(self._rig.targets)
-        times = np.arange(2 * count + 1) * (0.5 * _SECONDS_PER_SHAPE)
-        weights = np.zeros((len(times), count), "<f4")
-        weights[2 * np.arange(count) + 1, np.arange(count)] = 1.0
-        sampler = {
-            "input": self.binary.accessor(times.astype("<f4"), target=None, bounds=True),
-            "output": self.binary.accessor(weights.ravel(), target=None),
-            "interpolation": "LINEAR",
-        }
-        targets = [{"node": node, "path": "weights"} for node in nodes]
-        return {
-            "name": "shapes",
-            "samplers": [sampler],
-            "channels": [{"sampler": 0, "target": target} for target in targets],
-        }
 
 
 def _material_to_json(name: str, part: str) -> dict[str, Any]:
