@@ -95,9 +95,10 @@ class Ground:
         return Scene([self.mesh])
 
     def project(self, points: FloatArray) -> tuple[SurfacePoints, BoolArray]:
-        """Return the surface points (of the ground's own faces) under `points`, and which missed.
+        """Return the surface points (q,) under `points`, and which (q,) missed.
 
-        Rays from outside; where they miss, over holes of the bone, the closest point.
+        They name faces of the ground's own mesh, where rays from outside meet it; where rays miss,
+        over holes of the bone, the closest point.
         """
         out = self.out(points)
         hits = self.cast(points + _OUTSIDE * out, -out, _REACH)

@@ -216,7 +216,7 @@ def lay_muscle(
 def muscle_places(
     anatomy: Anatomy, lines: SheetLines | RingLines, rows: IntArray, thickness: float
 ) -> FloatArray:
-    """Return bottom and top vertices (2 h w, 3) of a muscle at rest [mm].
+    """Return bottom and top vertices (2*h*w, 3) of a muscle at rest [mm].
 
     Parameters
     ----------

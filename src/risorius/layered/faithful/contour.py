@@ -56,7 +56,7 @@ def contour_vertices(rows: int, columns: int) -> tuple[IntArray, IntArray, IntAr
 
 
 def fill_grid(known: IntArray, places: FloatArray, *, rows: int, columns: int) -> FloatArray:
-    """Return all bottom vertices (h w, 3) of a sheet from some of them.
+    """Return all bottom vertices (h*w, 3) of a sheet from some of them.
 
     Radial basis functions from the flat grid, with a polynomial in its plane: the flat contour
     lies in one plane and the system in space is singular (erratum E11).
@@ -106,7 +106,7 @@ def coons_patch(known: IntArray, places: FloatArray, *, rows: int, columns: int)
 
 
 def harmonic_fill(known: IntArray, values: FloatArray, *, rows: int, columns: int) -> FloatArray:
-    """Return values (h w, d) on the grid that are the mean of their neighbours where not known.
+    """Return values (h*w, d) on the grid that are the mean of their neighbours where not known.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ class Layer:
     first, last : int
         Their vertices among all of the anatomy.
     model : Model
-    fills : tuple of (h w, k) float64
+    fills : tuple of (h*w, k) float64
         Per muscle how its bottom vertices follow the k that have targets.
     """
 

@@ -27,7 +27,7 @@ class SheetLines:
         Internal lines by column, from origin to insertion.
     rows, columns : int
         h samples along, w across.
-    outward : (h w, 3) float64
+    outward : (h*w, 3) float64
         Directions out of the head at the bottom vertices when it was drawn.
     limit : float
         Largest contraction.
@@ -66,12 +66,12 @@ class SheetLines:
         return np.concatenate(rows)
 
     def bottom(self, positions: FloatArray, faces: IntArray) -> FloatArray:
-        """Return the bottom vertices (h w, 3) at rest [mm]."""
+        """Return the bottom vertices (h*w, 3) at rest [mm]."""
         known, places = self._samples(positions, positions, faces)
         return fill_grid(known, places, rows=self.rows, columns=self.columns)
 
     def upwards(self, positions: FloatArray, normals: FloatArray, faces: IntArray) -> FloatArray:
-        """Return the directions (h w, 3) from bottom to top: the surface's, filled in between.
+        """Return the directions (h*w, 3) from bottom to top: the surface's, filled in between.
 
         Parameters
         ----------

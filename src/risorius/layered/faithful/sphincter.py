@@ -30,7 +30,7 @@ class RingLines:
         How the samples of each are turned and flipped to pair with the inner ones.
     columns : int
         w around.
-    outward : (h w, 3) float64
+    outward : (h*w, 3) float64
         Directions out of the head at the bottom vertices when it was drawn.
     limit, protrusion : float
         Largest contraction and the forward shift.
@@ -50,22 +50,22 @@ class RingLines:
 
     @property
     def held(self) -> tuple[IntArray, IntArray]:
-        """No origin (0,), and all bottom vertices (h w,)."""
+        """No origin (0,), and all bottom vertices (h*w,)."""
         none = np.zeros(0, np.int32)
         return none, np.arange(self.rows * self.columns, dtype=np.int32)
 
     def targets(self, positions: FloatArray, faces: IntArray, contraction: float) -> FloatArray:
-        """Return targets (h w, 3) of the bottom vertices [mm]."""
+        """Return targets (h*w, 3) of the bottom vertices [mm]."""
         samples = self._samples(positions, positions, faces)
         c = min(contraction, self.limit)
         return constrict(samples, c, protrusion=self.protrusion).reshape(-1, 3)
 
     def bottom(self, positions: FloatArray, faces: IntArray) -> FloatArray:
-        """Return the bottom vertices (h w, 3) at rest [mm]."""
+        """Return the bottom vertices (h*w, 3) at rest [mm]."""
         return self._samples(positions, positions, faces).reshape(-1, 3)
 
     def upwards(self, positions: FloatArray, normals: FloatArray, faces: IntArray) -> FloatArray:
-        """Return the directions (h w, 3) from bottom to top.
+        """Return the directions (h*w, 3) from bottom to top.
 
         Parameters
         ----------
