@@ -99,7 +99,7 @@ class Cloning:
         said: list[str] = []
         with clock.stage("parts"):
             if parameters.parts:
-                traced = replace(theirs, lids=skin.lids)
+                traced = replace(theirs, lids={s: pair.target for s, pair in skin.lids.items()})
                 parts, said = carriers(ours, traced, pairs.similarity, skin.warp)
         notes = (*ours.notes, *theirs.notes, *skin.notes, *said)
         return Cloning(ours, theirs, parameters, skin, parts, notes, clock.seconds)
@@ -157,15 +157,17 @@ class Cloning:
     def _restore_lids(self, ours: FloatArray, made: FloatArray) -> None:
         if not self.parameters.lid_contact:
             return
-        target = replace(self.target, lids=self.skin.lids)
-        for side in self.skin.lids:
-            contact = LidContact(self.source, target, side)
+        pairs = self.skin.lids
+        source = replace(self.source, lids={side: pair.source for side, pair in pairs.items()})
+        target = replace(self.target, lids={side: pair.target for side, pair in pairs.items()})
+        for side in pairs:
+            contact = LidContact(source, target, side)
             clear = None
             if EyeClearance.possible(target, side):
                 clear = EyeClearance(target, side)
             allowed = None
-            if EyeClearance.possible(self.source, side):
-                allowed = EyeClearance(self.source, side)
+            if EyeClearance.possible(source, side):
+                allowed = EyeClearance(source, side)
             for moved, clone in zip(ours, made):
                 step = contact.correct(moved, clone)
                 if step is not None:

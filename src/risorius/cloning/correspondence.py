@@ -10,7 +10,7 @@ from scipy.sparse import csr_matrix
 
 from risorius._check import BoolArray, FloatArray
 from risorius.cloning.landmark_pairs import LandmarkPairs
-from risorius.cloning.lid_trace import trusted_lids
+from risorius.cloning.lid_trace import LidPair, trusted_lids
 from risorius.cloning.mapping import Mapping, map_skin
 from risorius.cloning.parameters import CloneParameters
 from risorius.cloning.refinement import ray_mapping, refine
@@ -18,7 +18,6 @@ from risorius.cloning.registration import register
 from risorius.cloning.rough_fit import rough_fit
 from risorius.cloning.subject import Subject
 from risorius.mesh.core import TriMesh
-from risorius.mesh.lids import LidMargins
 from risorius.warp.rbf import RbfWarp
 
 __all__ = ["Correspondence", "SkinCarrier", "correspond"]
@@ -49,8 +48,8 @@ class Correspondence:
         Distance of its vertices to the target; NaN where unknown [mm].
     mapping : Mapping
     carry : SkinCarrier
-    lids : mapping of str to LidMargins
-        The target's, by side, where both heads have them.
+    lids : mapping of str to LidPair
+        By side, where both heads have them.
     notes : tuple of str
     """
 
@@ -60,7 +59,7 @@ class Correspondence:
     residual: FloatArray
     mapping: Mapping
     carry: SkinCarrier
-    lids: dict[str, LidMargins]
+    lids: dict[str, LidPair]
     notes: tuple[str, ...]
 
 
@@ -122,7 +121,11 @@ def _faithful(
         mapping, matrix, linear, found.rest, fitted, found.warp, target.mesh.positions, parameters
     )
     said = f"{found.centre_count} centres after {found.pass_count} passes, rays {found.ray:.1f} mm"
-    lids = {side: found_lids for side, found_lids in target.lids.items() if side in source.lids}
+    lids = {
+        side: LidPair(own, target.lids[side])
+        for side, own in source.lids.items()
+        if side in target.lids
+    }
     return Correspondence(pairs, found.warp, fitted, residual, mapping, carry, lids, (said,))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from risorius._check import FloatArray, IntArray
 from risorius.cloning.local_field import LocalField
-from risorius.cloning.polyline import interpolated, line_trust, shares
+from risorius.cloning.polyline import interpolated, shares
 from risorius.cloning.subject import Subject
 
 __all__ = ["LipContact"]
@@ -37,7 +37,6 @@ class LipContact:
         assert target.lips is not None
         self._source = (source.lips.slit.upper, source.lips.slit.lower)
         self._target = (target.lips.slit.upper, target.lips.slit.lower)
-        self._trust = line_trust(self._source, self._target)
         self._source_places = [shares(source.mesh.positions[line]) for line in self._source]
         self._places = [shares(target.mesh.positions[line]) for line in self._target]
         lips = target.lips
@@ -90,5 +89,5 @@ class LipContact:
             size = [np.linalg.norm(part, axis=1) for part in moved]
             share = size[number] / np.maximum(size[0] + size[1], 1e-12)
             fade = np.clip(np.minimum(place, 1.0 - place) / _END, 0.0, 1.0)
-            goals.append((line, sign * self._trust * (share * fade)[:, None] * missing))
+            goals.append((line, sign * (share * fade)[:, None] * missing))
         return goals
