@@ -14,14 +14,18 @@ from risorius.cloning.lid_trace import LidPair, trusted_lids
 from risorius.cloning.mapping import Mapping, map_skin
 from risorius.cloning.parameters import CloneParameters
 from risorius.cloning.refinement import ray_mapping, refine
-from risorius.cloning.registration import register
+from risorius.cloning.registration import Registration, register
 from risorius.cloning.rough_fit import rough_fit
 from risorius.cloning.subject import Subject
 from risorius.mesh.core import TriMesh
+from risorius.spatial.closest import closest_points
 from risorius.warp.rbf import RbfWarp
 
 __all__ = ["Correspondence", "SkinCarrier", "correspond"]
 
+# Above this share of the source's seen vertices, and below this number, the target is laid over
+# the source instead.
+_FINER, _LARGE = 1.4, 20000
 _EYES = {"l": "left", "r": "right"}
 
 
@@ -85,7 +89,10 @@ def correspond(
     fit = rough_fit(source, target, pairs)
     found = register(source, target, fit)
     rest = found.mesh.at(fit.positions)
-    mapping = map_skin(source, target, rest, found.mesh)
+    laid = None
+    if _is_finer(target, source):
+        found, laid = _laid(source, target, pairs, rest)
+    mapping = map_skin(source, target, rest, found.mesh, laid=laid)
     matrix = mapping.matrix(rest, curved=parameters.curved)
     linear = np.broadcast_to(pairs.similarity.linear, (rest.vertex_count, 3, 3))
     if parameters.local_scale > 0.0:
@@ -101,6 +108,35 @@ def correspond(
     return Correspondence(
         pairs, fit.warp, found.mesh, found.residual, mapping, carry, lids, tuple(notes)
     )
+
+
+def _is_finer(target: Subject, source: Subject) -> bool:
+    """Return whether the target's skin is finer, and small enough to be registered itself."""
+    ours, theirs = (int((~each.inside).sum()) for each in (source, target))
+    return theirs > _FINER * ours and theirs < _LARGE
+
+
+def _laid(
+    source: Subject, target: Subject, pairs: LandmarkPairs, rest: TriMesh
+) -> tuple[Registration, FloatArray]:
+    """Register the target on the source; return the source's skin as it lies on the target.
+
+    Returns
+    -------
+    Registration
+        What `register` would have found the other way round.
+    laid : (n, 3) float64
+        The target's vertices on `rest` [mm].
+    """
+    back = pairs.reversed()
+    fit = rough_fit(target, source, back)
+    found = register(target, source, fit)
+    laid = pairs.similarity.apply(found.mesh.positions)
+    near = closest_points(found.mesh, source.mesh.positions)
+    corners = found.mesh.faces[near.face]
+    positions = np.einsum("vc,vcj->vj", near.bary, target.mesh.positions[corners])
+    scale = pairs.similarity.scale
+    return Registration(rest.at(positions), scale * near.distance), laid
 
 
 def _faithful(

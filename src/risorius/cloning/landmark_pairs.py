@@ -46,6 +46,11 @@ class LandmarkPairs:
     similarity: Similarity
     miss: float
 
+    def reversed(self) -> LandmarkPairs:
+        """Return the pairs seen from the target."""
+        back = self.similarity.inverse()
+        return LandmarkPairs(self.names, self.target, self.source, back, self.miss * back.scale)
+
 
 def pair_landmarks(source: Subject, target: Subject) -> LandmarkPairs:
     """Match the landmarks of two heads by name.

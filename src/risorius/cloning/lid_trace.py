@@ -43,7 +43,7 @@ def trusted_lids(
         is the source's, unless the target's mesh is much finer.
     """
     result: dict[str, LidPair] = {}
-    seen = np.flatnonzero(target.cavity < 2), np.flatnonzero(source.cavity < 2)
+    seen = [np.flatnonzero(each.cavity < 2).astype(np.int32) for each in (target, source)]
     for side, own in source.lids.items():
         given = target.lids.get(side)
         if given is None:

@@ -86,7 +86,14 @@ class Mapping:
         return csr_matrix(self.filling @ result)
 
 
-def map_skin(source: Subject, target: Subject, rest: TriMesh, registered: TriMesh) -> Mapping:
+def map_skin(
+    source: Subject,
+    target: Subject,
+    rest: TriMesh,
+    registered: TriMesh,
+    *,
+    laid: FloatArray | None = None,
+) -> Mapping:
     """Find the place of each target vertex on the source.
 
     A vertex of one lip finds faces of that lip only, one that lies in the mouth or in a socket
@@ -101,13 +108,21 @@ def map_skin(source: Subject, target: Subject, rest: TriMesh, registered: TriMes
         The source's skin at rest, moved by the similarity [mm].
     registered : TriMesh
         The same faces, registered.
+    laid : (n, 3) float64, optional
+        The target's vertices, registered on `rest` instead: of two heads the finer one is laid
+        over the coarser, so that the way there and the way back agree [mm].
     """
     mesh = target.mesh
     normals = vertex_normals(mesh.positions, mesh.faces)
     groups = _groups(source, target)
     corners_of_mouth = MouthCorners.of(source, target)
-    found = _search(groups, registered, mesh.positions, normals)
-    _put(*corners_of_mouth.search(registered, mesh.positions, normals), found)
+    if laid is None:
+        surface, points = registered, mesh.positions
+    else:
+        surface, points = rest, laid
+        normals = vertex_normals(laid, mesh.faces)
+    found = _search(groups, surface, points, normals)
+    _put(*corners_of_mouth.search(surface, points, normals), found)
     found = _without_rounding(found)
     height = target.head.height
     fade = 1.0 - smooth_step((found.distance / height - _NEAR) / (_FAR - _NEAR))
