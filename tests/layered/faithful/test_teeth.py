@@ -22,7 +22,7 @@ def _box(*, is_lower: bool = False) -> Arch:
     hull = convex_hull(corners)
     forward = np.array([0.0, 0.0, 1.0])
     touched = np.arange(4, dtype=np.int32)
-    return Arch(hull.plane_normals, hull.plane_offsets, forward, touched, is_lower)
+    return Arch(hull.plane_normals, hull.plane_offsets, forward, touched, corners, is_lower)
 
 
 POINTS = np.array([(0.0, 0, 2.0), (0, 0, 4.0), (3.0, 0, 0), (0.5, 0.5, -2.0)])

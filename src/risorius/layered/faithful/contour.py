@@ -13,7 +13,7 @@ from risorius.errors import ShapeError
 from risorius.layered.faithful.action_line import ActionLine
 from risorius.warp.rbf import RbfWarp
 
-__all__ = ["Contour", "contour_vertices", "coons_patch", "fill_grid", "harmonic_fill"]
+__all__ = ["Contour", "contour_vertices", "fill_grid", "harmonic_fill"]
 
 # Largest gap between lines that should meet, as share of the contour's length (spec 6).
 _OPEN = 0.02
@@ -81,28 +81,6 @@ def fill_grid(known: IntArray, places: FloatArray, *, rows: int, columns: int) -
     result = warp(flat)
     result[known] = places
     return result
-
-
-def coons_patch(known: IntArray, places: FloatArray, *, rows: int, columns: int) -> FloatArray:
-    """Return the same from the contour alone, without solving.
-
-    Parameters
-    ----------
-    known : (k,) int32
-    places : (k, 3) float64
-    rows, columns : int
-    """
-    full = np.full((rows * columns, 3), np.nan)
-    full[known] = places
-    grid = full.reshape(rows, columns, 3)
-    u = np.linspace(0.0, 1.0, rows)[:, None, None]
-    v = np.linspace(0.0, 1.0, columns)[None, :, None]
-    ruled = (1 - u) * grid[:1] + u * grid[-1:] + (1 - v) * grid[:, :1] + v * grid[:, -1:]
-    ends = (
-        (1 - u) * (1 - v) * grid[0, 0] + (1 - u) * v * grid[0, -1]
-        + u * (1 - v) * grid[-1, 0] + u * v * grid[-1, -1]
-    )  # fmt: skip
-    return (ruled - ends).reshape(-1, 3)
 
 
 def harmonic_fill(known: IntArray, values: FloatArray, *, rows: int, columns: int) -> FloatArray:

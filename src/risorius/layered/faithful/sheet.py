@@ -122,6 +122,11 @@ def lay_sheet(
     ground : Ground
     sections : (int, int)
         w and h.
+
+    Raises
+    ------
+    ShapeError
+        If a line has less than two distinct points, or the four sides do not meet.
     """
     columns, rows = sections
     p: FaithfulParameters = ground.parameters
@@ -144,6 +149,7 @@ def lay_sheet(
     share = (places - low)[:, None]
     grid = np.stack([(1.0 - share) * side[low] + share * side[low + 1] for side in drawn], axis=1)
     contour = Contour((sides[0], insertion, sides[1], origin))
+    contour.require_closed(ground.positions, ground.faces)
     return SheetLines(
         contour, inner, rows, columns, ground.out(grid.reshape(-1, 3)), p.largest_contraction
     )

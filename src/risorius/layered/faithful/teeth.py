@@ -36,6 +36,8 @@ class Arch:
         Where skin leaves it.
     vertices : (k,) int32
         Skin that it touches.
+    corners : (c, 3) float64
+        Vertices of the hull, whose box tells quickly what is outside [mm].
     is_lower : bool
     """
 
@@ -43,6 +45,7 @@ class Arch:
     offsets: FloatArray
     forward: FloatArray
     vertices: IntArray
+    corners: FloatArray
     is_lower: bool
 
     def moved(self, jaw: JawAxes, pose: JawPose) -> Arch:
@@ -54,18 +57,23 @@ class Arch:
         normals = jaw.move(feet + self.normals, pose) - placed
         ends = jaw.move(np.stack([np.zeros(3), self.forward]), pose)
         offsets = np.einsum("fd,fd->f", normals, placed)
-        return Arch(normals, offsets, ends[1] - ends[0], self.vertices, True)
+        corners = jaw.move(self.corners, pose)
+        return Arch(normals, offsets, ends[1] - ends[0], self.vertices, corners, True)
 
     def exits(self, points: FloatArray) -> tuple[FloatArray, IntArray]:
         """Return how far (q,) points are from leaving forwards, 0 outside, and by which plane."""
-        below = self.offsets - points @ self.normals.T
+        distance, plane = np.zeros(len(points)), np.zeros(len(points), np.int32)
+        low, high = self.corners.min(axis=0), self.corners.max(axis=0)
+        near = np.flatnonzero(((points > low) & (points < high)).all(axis=1))
+        below = self.offsets - points[near] @ self.normals.T
+        inside = (below > 0.0).all(axis=1)
+        near, below = near[inside], below[inside]
         rate = self.normals @ self.forward
         leaves = rate > _EPSILON
         travel = np.where(leaves, below / np.where(leaves, rate, 1.0), np.inf)
-        plane = travel.argmin(axis=1)
-        inside = (below > 0.0).all(axis=1)
-        distance = np.where(inside, travel[np.arange(len(points)), plane], 0.0)
-        return distance, plane.astype(np.int32)
+        plane[near] = travel.argmin(axis=1)
+        distance[near] = travel.min(axis=1)
+        return distance, plane
 
     def depth(self, positions: FloatArray) -> FloatArray:
         """Return how deep (k,) the skin that it touches lies inside, at most 0 outside [mm]."""
@@ -127,7 +135,13 @@ def build_teeth(mechanics: Mechanics, scale: float) -> Teeth:
         touched = np.flatnonzero(near & (below < _DEEPEST * scale)).astype(np.int32)
         shrink = max(float(below[touched].max(initial=0.0)), 0.0) + 1e-6 * scale
         arches.append(
-            Arch(hull.plane_normals, hull.plane_offsets - shrink, forward, touched,
-                 kind == "teeth_lower")
-        )  # fmt: skip
+            Arch(
+                hull.plane_normals,
+                hull.plane_offsets - shrink,
+                forward,
+                touched,
+                hull.mesh.positions,
+                kind == "teeth_lower",
+            )
+        )
     return Teeth(tuple(arches))
