@@ -123,6 +123,7 @@ class FapFit:
 def _basis(rig: Rig) -> npt.NDArray[np.intp]:
     """Return the targets of the first set that is rich enough, else all that move."""
     kinds = [set_of(target.name) if len(target.vertices) else "" for target in rig.targets]
+    kinds = ["" if kind == "pairs" else kind for kind in kinds]
     for wanted in _PREFERENCE:
         found = np.flatnonzero([kind == wanted for kind in kinds])
         if len(found) >= _ENOUGH:

@@ -7,6 +7,7 @@ from functools import cache
 from risorius.controls.arkit import arkit_shapes
 from risorius.controls.presets import EMOTIONS
 from risorius.controls.standard_sets import STANDARD_SETS
+from risorius.playback.pairs import pair_of
 
 __all__ = ["TARGET_SETS", "set_of"]
 
@@ -23,7 +24,12 @@ def _whole_names() -> dict[str, str]:
 
 
 def set_of(name: str) -> str:
-    """Return the set of `TARGET_SETS` that the target `name` belongs to."""
+    """Return the set of `TARGET_SETS` that the target `name` belongs to.
+
+    Correctives of pairs belong to the set ``"pairs"``, which nobody asks for by itself.
+    """
+    if pair_of(name):
+        return "pairs"
     for section, standard in STANDARD_SETS.items():
         if name.startswith(standard.prefix):
             return section

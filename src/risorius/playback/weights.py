@@ -14,6 +14,7 @@ from risorius.controls.presets import PresetBook, default_presets
 from risorius.controls.standard import device_controls
 from risorius.controls.standard_sets import STANDARD_SETS
 from risorius.playback.fap_fit import FapFit
+from risorius.playback.pairs import pair_of
 from risorius.rig.rig import Rig
 
 __all__ = ["RigWeights"]
@@ -24,7 +25,8 @@ class RigWeights:
 
     A name that is a target is its weight. ``fap_*`` counts units of the face and is fitted at the
     feature points. A shape that the rig lacks and the presets know is made of the rig's singles,
-    muscle by muscle. What remains is remembered in `unmatched`.
+    muscle by muscle. Correctives of pairs get the product of their shapes' weights. What remains is
+    remembered in `unmatched`.
 
     Parameters
     ----------
@@ -50,6 +52,16 @@ class RigWeights:
             If the rig carries too few landmarks.
         """
         return FapFit.of_rig(self.rig)
+
+    @cached_property
+    def _pairs(self) -> tuple[tuple[int, int, int], ...]:
+        """Columns of each corrective and of the two shapes whose product drives it."""
+        found: list[tuple[int, int, int]] = []
+        for name, row in self._column.items():
+            first, second = pair_of(name) or ("", "")
+            if first in self._column and second in self._column:
+                found.append((row, self._column[first], self._column[second]))
+        return tuple(found)
 
     def of(self, values: Mapping[str, float]) -> FloatArray:
         """Return the weights (t,) of all targets for the values of a frame.
@@ -80,6 +92,10 @@ class RigWeights:
                 self.unmatched.setdefault(name, "the rig has no such target and no muscles for it")
         if made.any():
             result += np.clip(made, 0.0, 1.0)
+        for row, first, second in self._pairs:
+            result[row] = float(
+                np.clip(result[first], 0.0, 1.0) * np.clip(result[second], 0.0, 1.0)
+            )
         return result
 
     def _remember(self, parameters: Mapping[str, float]) -> None:

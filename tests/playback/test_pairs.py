@@ -1,0 +1,69 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from risorius.controls import default_presets
+from risorius.errors import ParameterError
+from risorius.playback.pairs import CorrectivePair, find_pairs, pair_name, pair_of, with_pairs
+from risorius.playback.weights import RigWeights
+from risorius.rig import Rig, bake
+from tests.face_fixtures import builtin_face
+
+NAMES = ("jawOpen", "mouthClose", "mouthSmileLeft", "mouthFunnel", "eyeBlinkRight")
+
+
+@pytest.fixture(scope="module")
+def pairs() -> tuple[CorrectivePair, ...]:
+    poses = {name: default_presets().arkit[name] for name in NAMES}
+    return find_pairs(builtin_face(), poses, budget=4)
+
+
+def test_lips_that_round_on_an_open_jaw_need_a_corrective(pairs) -> None:
+    assert ("jawOpen", "mouthFunnel") in {(pair.first, pair.second) for pair in pairs}
+    assert all(pair.largest > 0.5 for pair in pairs)
+
+
+def test_the_worst_pairs_come_first_and_correctives_bring_all_nearer(pairs) -> None:
+    whole = [np.sqrt((pair.deltas**2).sum(axis=1).mean()) for pair in pairs]
+    assert len(pairs) >= 3
+    assert whole == sorted(whole, reverse=True)
+    assert all(pair.after < 0.7 * pair.before for pair in pairs)
+
+
+def test_shapes_that_move_nothing_in_common_are_no_pair(pairs) -> None:
+    assert not any("eyeBlinkRight" in (pair.first, pair.second) for pair in pairs)
+
+
+def _rig(pairs) -> Rig:
+    arkit = default_presets().arkit
+    return with_pairs(bake(builtin_face(), {name: arkit[name] for name in NAMES}), pairs)
+
+
+def test_a_rig_with_correctives_meets_the_simulation(pairs) -> None:
+    rig, face, arkit = _rig(pairs), builtin_face(), default_presets().arkit
+    assert rig.names[len(NAMES) :] == tuple(pair.name for pair in pairs)
+    for pair in pairs:
+        weights = RigWeights(rig).of({pair.first: 1.0, pair.second: 1.0})
+        posed = rig.frame.to_canonical(rig.posed(dict(zip(rig.names, weights))))
+        wanted = face.displace({**arkit[pair.first], **arkit[pair.second]})
+        assert np.abs(posed - face.head.positions - wanted).max() < 0.01
+
+
+def test_a_corrective_is_driven_by_the_product_of_both_weights(pairs) -> None:
+    rig, pair = _rig(pairs), pairs[0]
+    row = rig.names.index(pair.name)
+    weights = RigWeights(rig)
+    assert weights.of({pair.first: 0.5, pair.second: 0.4})[row] == pytest.approx(0.2)
+    assert weights.of({pair.first: 0.5})[row] == 0.0
+    assert weights.of({pair.first: 3.0, pair.second: -1.0})[row] == 0.0
+
+
+def test_names_of_correctives_name_their_shapes() -> None:
+    assert pair_of(pair_name("jawOpen", "brow_l")) == ("jawOpen", "brow_l")
+    assert [pair_of(name) for name in ("pair_x", "a__b", "pair___b", "jawOpen")] == [None] * 4
+
+
+def test_a_budget_of_nothing_is_refused() -> None:
+    with pytest.raises(ParameterError, match="budget: 0 is below 1"):
+        find_pairs(builtin_face(), {}, budget=0)
