@@ -20,6 +20,8 @@ VERBS = [
     ["clone"],
     ["compare"],
     ["render"],
+    ["transfer"],
+    ["tune"],
     ["play"],
     ["convert"],
     ["landmarks"],

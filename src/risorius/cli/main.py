@@ -21,6 +21,8 @@ from risorius.cli import (
     project,
     render,
     rig,
+    transfer,
+    tune,
 )
 from risorius.cli.exits import INTERRUPTED
 
@@ -70,6 +72,8 @@ app.command("inspect")(inspect.inspect)
 app.command("clone")(clone.clone)
 app.command("compare")(compare.compare)
 app.command("render")(render.render)
+app.command("transfer")(transfer.transfer)
+app.command("tune")(tune.tune)
 app.command("play")(play.play)
 app.command("convert")(convert.convert)
 app.command("landmarks")(landmarks.landmarks)

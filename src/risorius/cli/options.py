@@ -13,6 +13,8 @@ __all__ = [
     "Axes",
     "Debug",
     "FlipLandmarks",
+    "FromHead",
+    "FromLandmarks",
     "HeadArgument",
     "LandmarkFile",
     "MandibleFile",
@@ -28,8 +30,12 @@ __all__ = [
     "Shapes",
     "SkullFile",
     "SkullLandmarks",
+    "SourcePoints",
+    "StyleFile",
+    "TargetPoints",
     "Unit",
     "Vectors",
+    "VectorsOutput",
     "as_parameters",
     "as_parts",
     "as_size",
@@ -223,6 +229,65 @@ Parameters = Annotated[
         metavar="NAME=VALUE",
         help="Parameter of the method that differs from its profile, such as support=0.5; "
         "repeatable.",
+        rich_help_panel=_METHOD,
+        show_default=False,
+    ),
+]
+
+VectorsOutput = Annotated[
+    Path,
+    typer.Option(
+        "--output",
+        "-o",
+        metavar="OUT",
+        help="Vector set to write (.json), for --vectors of `risorius rig`.",
+        show_default=False,
+    ),
+]
+FromHead = Annotated[
+    str,
+    typer.Option(
+        "--from",
+        metavar="SOURCE",
+        help="Head that the muscles are right on: a mesh, a project or 'builtin'.",
+    ),
+]
+FromLandmarks = Annotated[
+    Path | None,
+    typer.Option(
+        "--from-landmarks",
+        metavar="FILE",
+        help="Landmarks of SOURCE, if they are not found beside it.",
+        show_default=False,
+    ),
+]
+StyleFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--style",
+        metavar="FILE",
+        help="What was tuned on another head.",
+        rich_help_panel=_METHOD,
+        show_default=False,
+    ),
+]
+SourcePoints = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--source-point",
+        metavar="NAME=X,Y,Z",
+        help="Feature point of SOURCE by hand, in the unit of its file; repeatable.",
+        rich_help_panel=_METHOD,
+        show_default=False,
+    ),
+]
+TargetPoints = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--target-point",
+        metavar="NAME=X,Y,Z",
+        help="Feature point of HEAD by hand: nose_tip, head_top, head_left, head_right, nose_root, "
+        "socket_left, socket_right, nose_base, nose_left or nose_right; repeatable.",
         rich_help_panel=_METHOD,
         show_default=False,
     ),

@@ -13,6 +13,7 @@ from risorius.rig.rig import Rig
 __all__ = [
     "is_folder_output",
     "make_folder",
+    "require_json_output",
     "require_picture_output",
     "require_rig_output",
     "write_rig",
@@ -64,6 +65,20 @@ def require_picture_output(path: Path) -> Path:
     """
     if path.suffix.lower() != ".png":
         raise FormatError(f"{path}: pictures are PNG files; give a name that ends in .png")
+    _require_writable_file(path)
+    return path
+
+
+def require_json_output(path: Path) -> Path:
+    """Return `path` if a recipe can be written there.
+
+    Raises
+    ------
+    FormatError
+        If the ending is not ``.json``, or the folder is missing or not writable.
+    """
+    if path.suffix.lower() != ".json":
+        raise FormatError(f"{path}: a recipe is a text file; give a name that ends in .json")
     _require_writable_file(path)
     return path
 

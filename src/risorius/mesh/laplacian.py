@@ -198,15 +198,20 @@ def smooth(values: npt.ArrayLike, faces: IntArray, passes: int) -> FloatArray:
     One pass replaces the value of a vertex by the mean of itself and its neighbours.
     """
     result = np.array(values, dtype=np.float64)
-    pairs = edges(faces)
-    n = len(result)
-    rows = np.concatenate([pairs[:, 0], pairs[:, 1], np.arange(n)])
-    columns = np.concatenate([pairs[:, 1], pairs[:, 0], np.arange(n)])
-    average = csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, n))
-    average = diags(1.0 / np.asarray(average.sum(axis=1)).ravel()) @ average
+    average = averaging(faces, len(result))
     for _ in range(passes):
         result = average @ result
     return result
+
+
+def averaging(faces: IntArray, vertex_count: int) -> csr_matrix:
+    """Return one pass of `smooth` as a matrix (n, n), for whoever smooths many fields."""
+    pairs = edges(faces)
+    n = vertex_count
+    rows = np.concatenate([pairs[:, 0], pairs[:, 1], np.arange(n)])
+    columns = np.concatenate([pairs[:, 1], pairs[:, 0], np.arange(n)])
+    average = csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, n))
+    return diags(1.0 / np.asarray(average.sum(axis=1)).ravel()) @ average
 
 
 def _as_stiffness(value: npt.ArrayLike, vertex_count: int) -> FloatArray:

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from risorius._check import FloatArray, IntArray
+from risorius._check import FloatArray
+from risorius.vectormuscle.kernels.limit import limited_sum
 from risorius.vectormuscle.muscle import BoundMuscle
 
 __all__ = ["combine"]
-
-Field = tuple[IntArray, FloatArray]
 
 
 def combine(
@@ -38,38 +37,16 @@ def combine(
     result = np.zeros_like(positions)
     if not active:
         return result
+    # Only what some muscle reaches is worked on.
+    zone = np.unique(np.concatenate([muscle.vertices for muscle, _ in active]))
+    rows = [np.searchsorted(zone, muscle.vertices) for muscle, _ in active]
+    rest, moved = positions[zone], np.zeros((len(zone), 3))
+    fields = np.zeros((len(active), len(zone), 3))
     for _ in range(steps):
-        single: list[Field] = []
-        for muscle, share in active:
-            here = positions[muscle.vertices] + result[muscle.vertices]
-            single.append((muscle.vertices, muscle.displace(here, share)))
-        result += _limited_sum(single, len(positions))
+        for field, here, (muscle, share) in zip(fields, rows, active, strict=True):
+            field[here] = muscle.displace(rest[here] + moved[here], share)
+        # Sorting by content makes floating point sums independent of the order of the muscles.
+        order = sorted(range(len(fields)), key=lambda row: fields[row].tobytes())
+        limited_sum(fields[order], moved)
+    result[zone] = moved
     return result
-
-
-def _limited_sum(single: list[Field], vertex_count: int) -> FloatArray:
-    total = np.zeros((vertex_count, 3))
-    # Sorting by content makes floating point sums independent of the order of the muscles.
-    for vertices, field in sorted(single, key=_key):
-        total[vertices] += field
-    if len(single) == 1:
-        return total
-    scale = np.ones(vertex_count)
-    for vertices, field in single:
-        length = np.linalg.norm(field, axis=1)
-        moved = vertices[length > 0.0]
-        direction = np.zeros((vertex_count, 3))
-        direction[moved] = field[length > 0.0] / length[length > 0.0, None]
-        largest = np.zeros(vertex_count)
-        for others, other in single:
-            along = np.einsum("kd,kd->k", other, direction[others])
-            largest[others] = np.maximum(largest[others], along)
-        wanted = np.einsum("kd,kd->k", total[moved], direction[moved])
-        ratio = largest[moved] / np.maximum(wanted, 1e-300)
-        scale[moved] = np.where(wanted > 0.0, np.minimum(scale[moved], ratio), scale[moved])
-    return total * scale[:, None]
-
-
-def _key(item: Field) -> tuple[int, bytes]:
-    vertices, field = item
-    return len(vertices), field.tobytes()

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from risorius._check import FloatArray, one_of
 from risorius.anatomy.mechanics import Mechanics
-from risorius.anatomy.regions import find_regions
+from risorius.anatomy.regions import Regions, find_regions
 from risorius.anatomy.support import support_directions
 from risorius.controls.control import Control, Pose, resolve_pose
 from risorius.controls.standard import MUSCLES, SINGLE_MUSCLES, muscle_controls
+from risorius.errors import ParameterError
 from risorius.head.head import Head
 from risorius.mesh.normals import vertex_normals
 from risorius.vectormuscle.combine import combine
-from risorius.vectormuscle.muscle import BoundMuscle, FaceContext
+from risorius.vectormuscle.muscle import BoundMuscle, FaceContext, VectorMuscle
 from risorius.vectormuscle.profile import AngularProfile
 from risorius.vectormuscle.vector_set import VectorSet, default_vector_set
 from risorius.vectormuscle.wrinkle import BoundWrinkles, bind_all_wrinkles, raise_wrinkles
@@ -69,6 +70,8 @@ class VectorFace:
         Of the muscles that make any.
     notes : tuple of str
         What was left out, and why.
+    context : FaceContext
+        What muscles see of the head when they bind.
     """
 
     head: Head
@@ -79,6 +82,7 @@ class VectorFace:
     parameters: VectorParameters
     wrinkles: Mapping[str, BoundWrinkles]
     notes: tuple[str, ...]
+    context: FaceContext
 
     @staticmethod
     def build(
@@ -87,6 +91,7 @@ class VectorFace:
         *,
         mechanics: Mechanics | None = None,
         parameters: VectorParameters | None = None,
+        regions: Regions | None = None,
     ) -> VectorFace:
         """Fit a vector set to a head and compute every zone of influence.
 
@@ -98,6 +103,8 @@ class VectorFace:
         mechanics : Mechanics, optional
             Already built for this head.
         parameters : VectorParameters, optional
+        regions : Regions, optional
+            Of the skin, where they come from another head; found on this one if left out.
 
         Raises
         ------
@@ -111,18 +118,43 @@ class VectorFace:
         fitted = (vectors or default_vector_set()).fitted(head)
         mesh = head.skin.mesh
         normals = vertex_normals(mesh.positions, mesh.faces)
-        regions = find_regions(head, moving.lips, dict(moving.margins))
+        known = regions or find_regions(head, moving.lips, dict(moving.margins))
         outward = support_directions(
             mesh.positions, hinge=moving.jaw.hinge, face_height=head.height / 1.9
         )
         context = FaceContext(
-            mesh.positions, normals, moving, regions, chosen.angular, outward, chosen.support
+            mesh.positions, normals, moving, known, chosen.angular, outward, chosen.support
         )
         bound = {muscle.name: muscle.bind(context) for muscle in fitted.muscles}
         wrinkles, notes = bind_all_wrinkles(fitted.muscles, context, faces=mesh.faces)
         controls = _muscle_controls(tuple(bound)) + moving.controls
         notes = moving.notes + notes
-        return VectorFace(head, fitted, moving, bound, controls, chosen, wrinkles, notes)
+        return VectorFace(head, fitted, moving, bound, controls, chosen, wrinkles, notes, context)
+
+    def with_muscles(self, muscles: Iterable[VectorMuscle]) -> VectorFace:
+        """Return the face with some of its muscles replaced, each by one of the same name.
+
+        Only the zones of these muscles are computed anew.
+
+        Raises
+        ------
+        ParameterError
+            If the face has no muscle of such a name.
+        """
+        changed = {muscle.name: muscle for muscle in muscles}
+        unknown = sorted(set(changed) - set(self.bound))
+        if unknown:
+            raise ParameterError(f"muscles: this face has no {', '.join(unknown)}")
+        bound = {name: muscle.bind(self.context) for name, muscle in changed.items()}
+        faces = self.head.skin.mesh.faces
+        wrinkles, _ = bind_all_wrinkles(changed.values(), self.context, faces=faces)
+        kept = {name: fold for name, fold in self.wrinkles.items() if name not in changed}
+        return replace(
+            self,
+            vectors=self.vectors.replaced(changed.values()),
+            bound={**self.bound, **bound},
+            wrinkles={**kept, **wrinkles},
+        )
 
     def displace_skin(self, values: Mapping[str, float]) -> FloatArray:
         """Return the displacement (w, 3) [mm] of the welded skin by muscles alone."""

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
+from scipy.sparse import csr_matrix
 
 from risorius._check import FloatArray, IntArray
 from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.regions import Regions
 from risorius.errors import ParameterError
+from risorius.mesh.laplacian import averaging
 from risorius.vectormuscle.profile import AngularProfile
 
 __all__ = [
@@ -53,6 +56,12 @@ class FaceContext:
     outward: FloatArray
     support: float
 
+    @cached_property
+    def averaging(self) -> csr_matrix:
+        """Matrix (n, n) that averages a field over the neighbours of each vertex."""
+        mesh = self.mechanics.head.skin.mesh
+        return averaging(mesh.faces, mesh.vertex_count)
+
 
 class BoundMuscle(Protocol):
     """A muscle on one face: its zone of influence, computed once."""
@@ -81,6 +90,10 @@ class VectorMuscle(Protocol):
 
     def fitted(self, warp: Warp) -> VectorMuscle:
         """Return the muscle carried to another head; lengths scale with the local stretch."""
+        ...
+
+    def ends(self) -> FloatArray:
+        """Return head and tail (2, 3) [mm], the points that an export keeps."""
         ...
 
     def bind(self, context: FaceContext) -> BoundMuscle:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -52,6 +52,17 @@ class VectorSet:
         warp = warp_between(dict(self.landmarks), head.landmarks)
         marks = {name: head.landmarks.position(name) for name in head.landmarks}
         return VectorSet(tuple(muscle.fitted(warp) for muscle in self.muscles), marks)
+
+    def replaced(self, muscles: Iterable[VectorMuscle]) -> VectorSet:
+        """Return the set with some muscles replaced, each by one of the same name."""
+        changed = {muscle.name: muscle for muscle in muscles}
+        kept = tuple(changed.get(muscle.name, muscle) for muscle in self.muscles)
+        return VectorSet(kept, self.landmarks)
+
+    def text(self) -> str:
+        """Return the file's text."""
+        document = json.dumps(self.to_json(), indent=1, ensure_ascii=False, allow_nan=False)
+        return f"{document}\n"
 
     def to_json(self) -> dict[str, Any]:
         """Return the file's content; every muscle is written with its side."""

@@ -12,7 +12,6 @@ import numpy as np
 from risorius._check import FloatArray, IntArray, as_number
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.errors import ParameterError, RisoriusWarning
-from risorius.mesh.laplacian import smooth
 from risorius.vectormuscle.kinds.fields import read_regions
 from risorius.vectormuscle.muscle import (
     MIRROR,
@@ -25,14 +24,16 @@ from risorius.vectormuscle.muscle import (
 from risorius.vectormuscle.profile import angular_factor, fold_limit, radial_factor
 from risorius.vectormuscle.wrinkle import Wrinkles, WrinkleZone, read_wrinkles
 
-__all__ = ["BoundLinear", "LinearMuscle"]
+__all__ = ["MOST_STRENGTH", "BoundLinear", "LinearMuscle"]
 
 # Published k is not given; ours: this share of the shorter of the two radii.
 _PULL = 0.4
-# More than this reaches the fold limit of the profile.
-_MOST_STRENGTH = 0.98 * fold_limit(start_radius=1.0, finish_radius=2.0) / _PULL
+MOST_STRENGTH = 0.98 * fold_limit(start_radius=1.0, finish_radius=2.0) / _PULL
+"""Greatest strength of a linear muscle; more would reach the fold limit of the profile."""
 # Skin that slides instead of sinking keeps its length up to this factor.
 MOST_STRETCH = 1.6
+# How often the effect is averaged in the mouth corner.
+_CALM_PASSES = 10
 # Wrinkles begin at this share of the start radius: at the bone there is no skin to fold.
 _FIRST_WRINKLE = 0.2
 
@@ -79,12 +80,12 @@ class LinearMuscle:
     def __post_init__(self) -> None:
         if float(np.linalg.norm(self.insertion - self.origin)) == 0.0:
             raise ParameterError(f"muscle {self.name}: origin and insertion are one point")
-        if self.strength > _MOST_STRENGTH:
+        if self.strength > MOST_STRENGTH:
             _warn(
                 f"muscle {self.name}: strength {self.strength:g} would fold the skin; taken as "
-                f"{_MOST_STRENGTH:.3g}"
+                f"{MOST_STRENGTH:.3g}"
             )
-            object.__setattr__(self, "strength", _MOST_STRENGTH)
+            object.__setattr__(self, "strength", MOST_STRENGTH)
         if not 0.0 < self.half_angle < 90.0:
             clamped = float(np.clip(self.half_angle, 1.0, 89.0))
             _warn(f"muscle {self.name}: half_angle {self.half_angle:g} clamped to {clamped:g}")
@@ -127,6 +128,10 @@ class LinearMuscle:
             start_radius=scale * self.start_radius,
             finish_radius=scale * self.finish_radius,
         )
+
+    def ends(self) -> FloatArray:
+        """Return origin and insertion (2, 3) [mm]."""
+        return np.stack([self.origin, self.insertion])
 
     def influence(self, points: FloatArray, *, smooth: bool = True) -> FloatArray:
         """Return the effect ``r a`` (n,) at `points` (n, 3), 0 outside the zone."""
@@ -253,7 +258,9 @@ def _calm_corner(effect: FloatArray, context: FaceContext) -> FloatArray:
     """
     lips = context.mechanics.lips
     near = smooth_step(1.0 - lips.to_corner / (0.4 * lips.width))
-    calm = smooth(effect, context.mechanics.head.skin.mesh.faces, 10)
+    calm = effect
+    for _ in range(_CALM_PASSES):
+        calm = context.averaging @ calm
     return effect + near * (calm - effect)
 
 

@@ -70,6 +70,11 @@ class RollMuscle:
             over=scale * self.over,
         )
 
+    def ends(self) -> FloatArray:
+        """Return the right and left end (2, 3) of its width [mm]."""
+        side = np.array([self.half_width, 0.0, 0.0])
+        return np.stack([self.centre - side, self.centre + side])
+
     def bind(self, context: FaceContext) -> BoundField:
         """Precompute the field at contraction 1."""
         lips = context.mechanics.lips

@@ -95,6 +95,10 @@ class SheetMuscle:
             pull=scale * self.pull,
         )
 
+    def ends(self) -> FloatArray:
+        """Return origin and insertion (2, 3) [mm]."""
+        return np.stack([self.origin, self.insertion])
+
     def profile(self, place: FloatArray) -> FloatArray:
         """Return the motion (n,) along the fibre at `place` (n,), 0 origin to 1 insertion."""
         inner = (place - self.fixed) / (1.0 - self.fixed)

@@ -84,6 +84,11 @@ class SphincterMuscle:
             part=scale * self.part,
         )
 
+    def ends(self) -> FloatArray:
+        """Return the right and left end (2, 3) of its width [mm]."""
+        side = np.array([self.radii[0], 0.0, 0.0])
+        return np.stack([self.centre - side, self.centre + side])
+
     def bind(self, context: FaceContext) -> BoundField:
         """Precompute the field at contraction 1."""
         offset = context.positions - self.centre

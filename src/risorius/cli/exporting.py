@@ -1,0 +1,120 @@
+"""From the arguments of `transfer` and `tune` to an export under way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal, cast
+
+import typer
+
+from risorius._check import FloatArray
+from risorius.cli.sources import Given, read_head, resolve
+from risorius.cli.talk import Talk
+from risorius.controls.presets import PresetBook
+from risorius.head.head import Head
+from risorius.io.atomic import write_bytes
+from risorius.project import BUILTIN, presets_of, vectors_of
+from risorius.vectormuscle.export import Export, ExportParameters
+from risorius.vectormuscle.export_points import FeatureSet, find_features
+from risorius.vectormuscle.vector_set import VectorSet
+
+__all__ = ["Way", "as_feature", "begin_export", "write_vectors"]
+
+
+@dataclass(frozen=True)
+class Way:
+    """From where to where muscles are carried.
+
+    Parameters
+    ----------
+    given : Given
+        About the target.
+    source : str
+        Head that the muscles are right on.
+    source_landmarks : Path or None
+    source_points, target_points : mapping of str to (float, float, float)
+        Feature points given by hand, in the frame and unit of their head's file.
+    """
+
+    given: Given
+    source: str = BUILTIN
+    source_landmarks: Path | None = None
+    source_points: dict[str, tuple[float, ...]] = field(
+        default_factory=dict[str, tuple[float, ...]]
+    )
+    target_points: dict[str, tuple[float, ...]] = field(
+        default_factory=dict[str, tuple[float, ...]]
+    )
+
+
+def begin_export(name: str, way: Way, talk: Talk) -> tuple[Export, PresetBook]:
+    """Read both heads and return the export before its first group, and the presets.
+
+    Raises
+    ------
+    RisoriusError
+        If something of it is refused.
+    """
+    project = resolve(name, way.given)
+    vectors, presets = vectors_of(project), presets_of(project)
+    target = read_head(project, talk)
+    source = read_head(resolve(way.source, Given(landmarks=way.source_landmarks)), talk)
+    with talk.stage("feature points"):
+        features = (
+            find_features(source, given=_canonical(source, way.source_points)),
+            find_features(target, given=_canonical(target, way.target_points)),
+        )
+        profile = cast(Literal["improved", "faithful"], project.profile)
+        export = Export.begin(
+            source,
+            target,
+            vectors,
+            parameters=ExportParameters.of_profile(profile),
+            features=features,
+            presets=presets,
+        )
+    talk.put(head=project.name, source=way.source, features=_described(target, features[1]))
+    found = [feature for feature, origin in features[1].sources.items() if origin == "found"]
+    talk.say(f"  feature points found by shape: {', '.join(found) or '-'}")
+    talk.say(f"  correspondences: {len(export.pairs)}")
+    return export, presets
+
+
+def write_vectors(vectors: VectorSet, path: Path, talk: Talk) -> None:
+    """Write a vector set and say so."""
+    write_bytes(path, vectors.text().encode())
+    talk.say(f"wrote {path}: {len(vectors.muscles)} muscles")
+    talk.put(output=path, muscles=[muscle.name for muscle in vectors.muscles])
+
+
+def as_feature(given: list[str] | None, option: str) -> dict[str, tuple[float, ...]]:
+    """Return ``NAME=X,Y,Z`` options as name -> place."""
+    result: dict[str, tuple[float, ...]] = {}
+    for text in given or []:
+        name, _, places = text.partition("=")
+        try:
+            row = tuple(float(number) for number in places.split(","))
+        except ValueError:
+            row = ()
+        if not name or len(row) != 3:
+            raise typer.BadParameter(
+                f"{text!r} is not NAME=X,Y,Z, such as nose_tip=0,1.2,3", param_hint=option
+            )
+        result[name] = row
+    return result
+
+
+def _canonical(head: Head, points: dict[str, tuple[float, ...]]) -> dict[str, FloatArray]:
+    return {name: head.frame.to_canonical([place])[0] for name, place in points.items()}
+
+
+def _described(head: Head, features: FeatureSet) -> dict[str, dict[str, object]]:
+    """Return the feature points in the frame and unit of the head's file."""
+    return {
+        name: {
+            "position": head.frame.to_input(place[None])[0].round(4).tolist(),
+            "from": features.sources[name],
+        }
+        for name, place in features.points.items()
+    }

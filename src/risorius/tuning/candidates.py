@@ -1,0 +1,140 @@
+"""From the values of a genome to a face that can be looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from risorius._check import FloatArray
+from risorius.controls.control import Pose, resolve_pose
+from risorius.errors import ParameterError
+from risorius.rig.face import Face
+from risorius.tuning.genome import Genome, Parameter
+
+__all__ = ["Candidates", "FunctionCandidates", "PoseCandidates", "sensitivity_of"]
+
+
+class Candidates(Protocol):
+    """Something with named bounded parameters that makes a face."""
+
+    @property
+    def genome(self) -> Genome:
+        """What may be tuned."""
+        ...
+
+    def positions(self, values: Mapping[str, float]) -> FloatArray:
+        """Return the vertices (n, 3) of the candidate with these values [mm]."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class FunctionCandidates:
+    """Any function of named parameters: stiffness, thickness, outline points.
+
+    Parameters
+    ----------
+    genome : Genome
+    make : callable
+        From values by name to vertices (n, 3) [mm].
+    """
+
+    genome: Genome
+    make: Callable[[Mapping[str, float]], FloatArray]
+
+    def positions(self, values: Mapping[str, float]) -> FloatArray:
+        """Return the vertices (n, 3) of the candidate with these values [mm]."""
+        return self.make(values)
+
+
+@dataclass(frozen=True, eq=False)
+class PoseCandidates:
+    """A preset of any face: how far each control goes.
+
+    Parameters
+    ----------
+    face : Face
+    pose : mapping of str to float
+        The preset before tuning; its controls are what is tuned.
+    mirror : bool
+        Controls of both sides that start equal stay equal; one parameter, named without side,
+        drives both.
+    """
+
+    face: Face
+    pose: Pose
+    mirror: bool = True
+
+    @property
+    def genome(self) -> Genome:
+        """One parameter for each control of the pose, in the control's range."""
+        return self._genome
+
+    @cached_property
+    def _genome(self) -> Genome:
+        ranges = {control.name: control for control in self.face.controls}
+        values = resolve_pose(self.face.controls, self.pose).values
+        parameters = [
+            Parameter(name, ranges[group[0]].low, ranges[group[0]].high, values[group[0]])
+            for name, group in self._groups().items()
+        ]
+        return Genome(tuple(parameters))
+
+    def pose_of(self, values: Mapping[str, float]) -> Pose:
+        """Return the preset with these values."""
+        return {
+            control: values[name] for name, group in self._groups().items() for control in group
+        }
+
+    def positions(self, values: Mapping[str, float]) -> FloatArray:
+        """Return the vertices (n, 3) of the candidate with these values [mm]."""
+        return self.face.pose(self.pose_of(values))
+
+    def _groups(self) -> dict[str, tuple[str, ...]]:
+        """Return controls by the name of the parameter that drives them."""
+        result: dict[str, tuple[str, ...]] = {}
+        for name, value in self.pose.items():
+            other = _other_side(name)
+            both = self.mirror and other is not None and self.pose.get(other) == value
+            stem = name[:-2] if both else name
+            result[stem] = (*result.get(stem, ()), name)
+        return result
+
+
+def _other_side(name: str) -> str | None:
+    swapped = {"_l": "_r", "_r": "_l"}.get(name[-2:])
+    return name[:-2] + swapped if swapped else None
+
+
+def sensitivity_of(candidates: Candidates, *, names: Iterable[str] | None = None) -> FloatArray:
+    """Return the effect (k, p) of each parameter over its range on the vertices [mm].
+
+    One-sided differences of a quarter of the range at the start.
+
+    Parameters
+    ----------
+    candidates : Candidates
+    names : iterable of str, optional
+        Parameters to look at, others count as without effect; default all.
+
+    Notes
+    -----
+    Costs one face per parameter.
+    """
+    genome = candidates.genome
+    start = genome.start
+    rest = candidates.positions(genome.named(start))
+    result = np.zeros((rest.size, len(genome)))
+    for row in genome.rows(genome.names if names is None else names):
+        moved = start.copy()
+        reach = 0.25 * (genome.high[row] - genome.low[row])
+        upwards = start[row] + reach <= genome.high[row]
+        moved[row] += reach if upwards else -reach
+        change = candidates.positions(genome.named(moved)) - rest
+        result[:, row] = change.ravel() * (4.0 if upwards else -4.0)
+    if not np.isfinite(result).all():
+        raise ParameterError("sensitivity: a candidate has vertices that are not finite")
+    return result

@@ -1,0 +1,190 @@
+"""The genes of vector muscles: changes that mean the same on every head."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any, Literal, cast
+
+import numpy as np
+
+from risorius._check import FloatArray
+from risorius.controls.control import Pose
+from risorius.tuning.genome import Genome, Parameter
+from risorius.vectormuscle.face import VectorFace
+from risorius.vectormuscle.kinds.linear import MOST_STRENGTH
+from risorius.vectormuscle.muscle import VectorMuscle
+
+__all__ = ["MuscleCandidates", "apply_genes", "muscle_parameters"]
+
+Way = Literal["shift", "factor", "add"]
+# Spec vector-muscles 2.6: coordinates +-8 % of the head's width, radii +-30 %, angles +-10
+# degrees, strength 0.5 to 1.5; all as changes, so that a style fits the next head as well.
+_SHIFT = ("shift", -0.08, 0.08)
+_LENGTH = ("factor", 0.7, 1.3)
+_AMOUNT = ("factor", 0.5, 1.5)
+_RULES: Mapping[str, tuple[Way, float, float]] = MappingProxyType(
+    {
+        "origin": _SHIFT, "insertion": _SHIFT, "centre": _SHIFT,
+        "start_radius": _LENGTH, "finish_radius": _LENGTH, "radii": _LENGTH,
+        "half_width": _LENGTH, "height": _LENGTH, "half_angle": ("add", -10.0, 10.0),
+        "strength": _AMOUNT, "pull": _AMOUNT, "shrink": _AMOUNT, "forward": _AMOUNT,
+        "part": _AMOUNT, "back": _AMOUNT, "over": _AMOUNT,
+    }
+)  # fmt: skip
+# The start of the fall-off stays below this share of its finish.
+_LATEST_START = 0.9
+_AXES = "xyz"
+
+
+def muscle_parameters(
+    muscles: Iterable[VectorMuscle], *, mirror: bool = True
+) -> tuple[Parameter, ...]:
+    """Return the genes of muscles: ten for a linear one.
+
+    Places shift by shares of the head's width, lengths and amounts are multiplied, angles are
+    added to [deg]. With `mirror` one gene, named without side, drives both sides, and muscles
+    on the midline stay there.
+    """
+    result: dict[str, Parameter] = {}
+    for muscle in muscles:
+        name = muscle.name
+        sided = name.endswith(("_l", "_r"))
+        stem = name[:-2] if mirror and sided else name
+        for gene, (way, low, high), value in _numbers(muscle):
+            if way == "factor" and value == 0.0:
+                continue
+            if mirror and not sided and way == "shift" and gene.endswith("_x"):
+                continue
+            full = f"{stem}.{gene}"
+            result[full] = Parameter(full, low, high, 1.0 if way == "factor" else 0.0)
+    return tuple(result.values())
+
+
+def apply_genes(muscle: VectorMuscle, values: Mapping[str, float], *, width: float) -> VectorMuscle:
+    """Return a muscle changed by its genes; those of other muscles do not matter.
+
+    Parameters
+    ----------
+    muscle : VectorMuscle
+        As it was proposed.
+    values : mapping of str to float
+        Genes by name; one with the muscle's side goes before one without.
+    width : float
+        Width of the head [mm].
+    """
+    stem = muscle.name[:-2] if muscle.name.endswith(("_l", "_r")) else muscle.name
+    changed: dict[str, Any] = {}
+    for gene, (way, _, _), value in _numbers(muscle):
+        full, shared = f"{muscle.name}.{gene}", f"{stem}.{gene}"
+        if full in values:
+            change = values[full]
+        elif shared in values:
+            mirrored = muscle.name.endswith("_r") and way == "shift" and gene.endswith("_x")
+            change = -values[shared] if mirrored else values[shared]
+        else:
+            continue
+        changed[gene] = _changed(way, value, change, width)
+    return _with_numbers(muscle, changed) if changed else muscle
+
+
+def _changed(way: Way, value: float, change: float, width: float) -> float:
+    if way == "shift":
+        return value + change * width
+    return value * change if way == "factor" else value + change
+
+
+def _numbers(muscle: VectorMuscle) -> list[tuple[str, tuple[Way, float, float], float]]:
+    """Return (gene, rule, value) for each number of a muscle that may be tuned."""
+    found: list[tuple[str, tuple[Way, float, float], float]] = []
+    for entry in fields(cast(Any, muscle)):
+        rule = _RULES.get(entry.name)
+        if rule is None:
+            continue
+        value = getattr(muscle, entry.name)
+        if isinstance(value, float | int):
+            found.append((entry.name, rule, float(value)))
+        else:
+            row = np.asarray(value, dtype=np.float64)
+            found.extend(
+                (f"{entry.name}_{axis}", rule, float(number)) for axis, number in zip(_AXES, row)
+            )
+    return found
+
+
+def _with_numbers(muscle: VectorMuscle, changed: Mapping[str, float]) -> VectorMuscle:
+    new: dict[str, Any] = {}
+    for entry in fields(cast(Any, muscle)):
+        value = getattr(muscle, entry.name)
+        if entry.name in changed:
+            new[entry.name] = changed[entry.name]
+        elif entry.name in _RULES and not isinstance(value, float | int):
+            row = [
+                changed.get(f"{entry.name}_{axis}", float(number))
+                for axis, number in zip(_AXES, value)
+            ]
+            new[entry.name] = np.array(row) if isinstance(value, np.ndarray) else tuple(row)
+    return replace(cast(Any, muscle), **_tamed(muscle, new))
+
+
+def _tamed(muscle: VectorMuscle, new: dict[str, Any]) -> dict[str, Any]:
+    """Return `new` numbers inside what a muscle may have."""
+    if "strength" in new:
+        new["strength"] = min(new["strength"], MOST_STRENGTH)
+    if "half_angle" in new:
+        new["half_angle"] = float(np.clip(new["half_angle"], 1.0, 89.0))
+    if "start_radius" in new or "finish_radius" in new:
+        finish = new.get("finish_radius", getattr(muscle, "finish_radius", np.inf))
+        start = new.get("start_radius", getattr(muscle, "start_radius", 0.0))
+        new["start_radius"] = min(start, _LATEST_START * finish)
+    return new
+
+
+@dataclass(frozen=True, eq=False)
+class MuscleCandidates:
+    """Vector muscles of one face in one expression.
+
+    Parameters
+    ----------
+    face : VectorFace
+        With the muscles as proposed.
+    names : tuple of str
+        Muscles to tune.
+    pose : mapping of str to float
+        Expression that is looked at.
+    width : float
+        Width of the head [mm].
+    mirror : bool
+        See `muscle_parameters`.
+    """
+
+    face: VectorFace
+    names: Sequence[str]
+    pose: Pose
+    width: float
+    mirror: bool = True
+
+    @cached_property
+    def proposed(self) -> tuple[VectorMuscle, ...]:
+        """The muscles to tune, before tuning."""
+        wanted = set(self.names)
+        return tuple(each for each in self.face.vectors.muscles if each.name in wanted)
+
+    @property
+    def genome(self) -> Genome:
+        """What may be tuned."""
+        return self._genome
+
+    @cached_property
+    def _genome(self) -> Genome:
+        return Genome(muscle_parameters(self.proposed, mirror=self.mirror))
+
+    def muscles(self, values: Mapping[str, float]) -> tuple[VectorMuscle, ...]:
+        """Return the tuned muscles."""
+        return tuple(apply_genes(each, values, width=self.width) for each in self.proposed)
+
+    def positions(self, values: Mapping[str, float]) -> FloatArray:
+        """Return the vertices (n, 3) of the candidate with these values [mm]."""
+        return self.face.with_muscles(self.muscles(values)).pose(self.pose)
