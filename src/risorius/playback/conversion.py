@@ -11,14 +11,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
-from scipy.sparse import csc_matrix
 
 from risorius._check import FloatArray, one_of
 from risorius.controls.fap import fap_name, fap_number, faps
 from risorius.controls.stream import Stream, StreamFrame
 from risorius.errors import ParameterError
 from risorius.playback.bounded_fit import fit_bounded
+from risorius.playback.inner_products import inner_products
 from risorius.playback.shape_names import TARGET_SETS, set_of
 from risorius.playback.weights import RigWeights
 from risorius.rig.rig import Rig
@@ -136,7 +135,7 @@ class _ToTargets:
         self.names = tuple(rig.names[index] for index in chosen)
         self._chosen = np.array(chosen, np.intp)
         self._others = np.setdiff1d(np.arange(len(rig.targets)), self._chosen)
-        self._gram, moving = _gram(rig)
+        self._gram, moving = inner_products(rig)
         self._moving = max(moving, 1)
         own = self._gram[np.ix_(self._chosen, self._chosen)]
         self._own = own + (_EFFORT * np.trace(own) / len(own) + 1e-12) * np.eye(len(own))
@@ -153,19 +152,3 @@ class _ToTargets:
         apart[self._chosen] -= found
         square = max(float(apart @ self._gram @ apart), 0.0) / self._moving
         return dict(zip(self.names, found.tolist())), square
-
-
-def _gram(rig: Rig) -> tuple[npt.NDArray[np.float64], int]:
-    """Return the inner products (t, t) of all targets [mm^2], and how many vertices ever move."""
-    columns = [rig.frame.vectors_to_canonical(target.deltas).ravel() for target in rig.targets]
-    rows = [
-        (3 * target.vertices[:, None].astype(np.int64) + np.arange(3)).ravel()
-        for target in rig.targets
-    ]
-    starts = np.concatenate([[0], np.cumsum([len(column) for column in columns])])
-    table = csc_matrix(
-        (np.concatenate(columns), np.concatenate(rows), starts),
-        shape=(3 * rig.mesh.vertex_count, len(columns)),
-    )
-    moving = len(np.unique(np.concatenate([target.vertices for target in rig.targets])))
-    return np.asarray((table.T @ table).todense()), moving
