@@ -119,7 +119,7 @@ class FaithfulParameters:
     lid_pinned: float = 0.5
     lid_hold: float = 0.2
     influence_reach: float = 0.25
-    jaw_reach: float = 0.4
+    jaw_reach: float = 0.55
     teeth_rounds: int = 3
     ramp_steps: int = 5
     ramp_sweeps: int = 12
