@@ -1,0 +1,1 @@
+"""How many generations a user needs, by strategy."""
