@@ -270,3 +270,20 @@ def test_the_profile_changes_the_shapes(tmp_path: Path) -> None:
         for name in ("improved", "faithful")
     )
     assert np.abs(improved - faithful).max() > 0.1
+
+
+@pytest.mark.parametrize("name", ["face.glb/", "v1.2/"])
+def test_a_new_folder_with_an_ending_is_refused_before_the_work(tmp_path: Path, name: str) -> None:
+    result = run("rig", "builtin", "-o", f"{tmp_path}/{name}")
+    assert result.exit_code == 1
+    assert "a name without ending; leave out" in result.stderr
+    assert "seconds" not in result.stdout
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("shapes", ["", " , "])
+def test_an_empty_list_of_shapes_is_refused(tmp_path: Path, shapes: str) -> None:
+    result = run("rig", "builtin", "-o", tmp_path / "f.npz", "--shapes", shapes)
+    assert result.exit_code == 1
+    assert "names no set; choose from singles" in result.stderr
+    assert not list(tmp_path.iterdir())

@@ -196,3 +196,9 @@ def test_real_heads_stand_upright_in_their_unit(real_data: Path, head: str, unit
     canonical = marks.at(frame.to_canonical(mesh.positions))
     assert canonical.position("2.1")[1] == pytest.approx(-100.0, abs=25.0)
     assert canonical.position("2.6")[0] > 0.0 > canonical.position("2.7")[0]
+
+
+def test_axes_that_the_landmarks_contradict_are_taken_with_a_warning() -> None:
+    with pytest.warns(RisoriusWarning, match=r"axes: '\+Z-Y' is 95 degrees off"):
+        frame = detect_frame(landmark_set(), axes="+Z-Y")
+    assert frame.describe() == "unit mm (1 mm), up +Z, forward -Y"

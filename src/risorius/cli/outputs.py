@@ -37,6 +37,11 @@ def require_rig_output(text: str) -> Path:
         _require_writable_folder(path)
         if path.exists() and not path.is_dir():
             raise FormatError(f"{path}: is a file, a folder of OBJ files cannot be written there")
+        if path.suffix and not path.is_dir():
+            raise FormatError(
+                f"{path}: a new folder of OBJ files has a name without ending; leave out "
+                f"{path.suffix!r}, or make the folder first"
+            )
         return path
     ending = path.suffix.lower()
     if ending == ".obj":

@@ -11,7 +11,7 @@ from typing import Any
 from risorius import _formats
 from risorius.anatomy.mechanics import Mechanics
 from risorius.cli.talk import Talk
-from risorius.controls.shape_sets import SOLVED_SETS, ShapeList, list_shapes
+from risorius.controls.shape_sets import ALL_SHAPE_SETS, SOLVED_SETS, ShapeList, list_shapes
 from risorius.errors import ParameterError
 from risorius.head.head import Head, HeadOptions
 from risorius.playback.solved_sets import with_solved_sets
@@ -104,6 +104,10 @@ def with_given(base: Project, given: Given) -> Project:
         changed["flip_landmarks"] = not base.flip_landmarks
     if given.shapes is not None:
         changed["shapes"] = tuple(name.strip() for name in given.shapes.split(",") if name.strip())
+        if not changed["shapes"]:
+            raise ParameterError(
+                f"shapes: {given.shapes!r} names no set; choose from {', '.join(ALL_SHAPE_SETS)}"
+            )
     return replace(base, **changed)
 
 

@@ -23,6 +23,8 @@ _EYE_DISTANCE = 63.0
 _EYE_TOLERANCE = 1.45
 # Rotations closer than this to a signed axis permutation are taken as one: a head may be tilted.
 _SNAP_DEGREES = 30.0
+# Axes that are given and further than this from the landmarks are probably a mistake.
+_DOUBTFUL_DEGREES = 60.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +108,7 @@ def detect_frame(
     require(landmarks, ("3.7", "3.11", "3.8", "3.12"), purpose="the frame of the head")
     left_eye = landmarks.positions(("3.7", "3.11")).mean(axis=0)
     right_eye = landmarks.positions(("3.8", "3.12")).mean(axis=0)
-    rotation = _rotation_from_axes(axes) if axes else _rotation(landmarks)
+    rotation = _rotation_from_axes(axes, landmarks) if axes else _rotation(landmarks)
     distance = float(np.linalg.norm(left_eye - right_eye))
     if distance == 0.0:
         raise LandmarkError("landmarks: left and right eye corners (3.7 3.11 3.8 3.12) coincide")
@@ -115,6 +117,26 @@ def detect_frame(
 
 
 def _rotation(landmarks: LandmarkSet) -> FloatArray:
+    rotation = _measured_rotation(landmarks)
+    snapped = _nearest_permutation(rotation)
+    angle = _degrees_between(rotation, snapped)
+    if angle <= _SNAP_DEGREES:
+        return snapped
+    warnings.warn(
+        f"frame: the head is turned {angle:.0f} degrees off the axes; it is rotated inside and "
+        "turned back on output (give --axes to override)",
+        RisoriusWarning,
+        stacklevel=3,
+    )
+    return rotation
+
+
+def _degrees_between(first: FloatArray, second: FloatArray) -> float:
+    cosine = 0.5 * (float(np.trace(first @ second.T)) - 1.0)
+    return float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
+
+
+def _measured_rotation(landmarks: LandmarkSet) -> FloatArray:
     low = next((name for name in ("2.1", "2.10", "8.2", "2.3") if name in landmarks), None)
     if low is None:
         raise LandmarkError("landmarks: the frame of the head needs 2.1 (lowest point of the chin)")
@@ -126,19 +148,7 @@ def _rotation(landmarks: LandmarkSet) -> FloatArray:
     if length == 0.0:
         raise LandmarkError(f"landmarks: {low!r} lies on the line through the eyes")
     up /= length
-    rotation = np.array([across, up, np.cross(across, up)], dtype=np.float64)
-    snapped = _nearest_permutation(rotation)
-    cosine = 0.5 * (float(np.trace(rotation @ snapped.T)) - 1.0)
-    angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
-    if angle <= _SNAP_DEGREES:
-        return snapped
-    warnings.warn(
-        f"frame: the head is turned {angle:.0f} degrees off the axes; it is rotated inside and "
-        "turned back on output (give --axes to override)",
-        RisoriusWarning,
-        stacklevel=3,
-    )
-    return rotation
+    return np.array([across, up, np.cross(across, up)], dtype=np.float64)
 
 
 def _nearest_permutation(rotation: FloatArray) -> FloatArray:
@@ -155,7 +165,7 @@ def _nearest_permutation(rotation: FloatArray) -> FloatArray:
     return result
 
 
-def _rotation_from_axes(axes: str) -> FloatArray:
+def _rotation_from_axes(axes: str, landmarks: LandmarkSet) -> FloatArray:
     text = axes.strip().upper().replace(" ", "").replace(",", "")
     rows: list[FloatArray] = []
     while text:
@@ -172,7 +182,16 @@ def _rotation_from_axes(axes: str) -> FloatArray:
             f"axes: {axes!r} is not understood; give up and forward, for example '+Y+Z' or '+Z-Y'"
         )
     up, forward = rows
-    return np.array([np.cross(up, forward), up, forward], dtype=np.float64)
+    rotation = np.array([np.cross(up, forward), up, forward], dtype=np.float64)
+    angle = _degrees_between(rotation, _measured_rotation(landmarks))
+    if angle > _DOUBTFUL_DEGREES:
+        warnings.warn(
+            f"axes: {axes!r} is {angle:.0f} degrees off what the landmarks say; the face will not "
+            "move well if that is a mistake (leave out --axes to trust the landmarks)",
+            RisoriusWarning,
+            stacklevel=4,
+        )
+    return rotation
 
 
 def _scale(distance: float, unit: str | None) -> tuple[float, str]:
