@@ -26,8 +26,8 @@ __all__ = ["FapFit"]
 
 _ENOUGH = 20  # targets of one set that can stand for a whole face
 _PREFERENCE = ("singles", "fap", "arkit", "facs")
-_ABSENT = 4e-4  # weight of parameters that a frame says nothing of
-_EFFORT = 1e-3  # cost of a full weight [mm^2]
+_ABSENT = 1e-2  # weight of parameters that a frame says nothing of
+_EFFORT = 4e-3  # cost of a full weight [mm^2]
 _EYE_RADIUS = 12.0  # length at which a turn counts [mm]
 _MOST_MASKS = 64
 
