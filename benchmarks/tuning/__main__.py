@@ -42,29 +42,31 @@ def main() -> None:
     floors = {shape: floor(wish, effects[shape]) for shape, wish in wishes.items()}
     rows: list[list[object]] = []
     for error in options.errors:
-        lines: dict[str, np.ndarray] = {}
-        for strategy in options.strategies:
-            left: list[np.ndarray] = []
-            for shape, wish in wishes.items():
-                runs = [
-                    run(wish, strategy, seed, error, effects[shape])
-                    for seed in range(options.seeds)
-                ]
-                median = np.median(runs, axis=0)
-                lowest = min(floors[shape], float(np.min(runs)))
-                share = (median - lowest) / max(median[0] - lowest, 1e-9)
-                left.append(share)
-                rows.append([strategy, error, shape, round(lowest, 4), *median.round(4).tolist()])
-                print(
-                    f"{strategy:10} errs {error:.1f} {shape:13} first {median[0]:.3f} mm, "
-                    f"after {_GENERATIONS} {median[-1]:.3f}, best known {lowest:.3f}; of what "
-                    f"can be gained is left {share[-1]:.2f}, halved at "
-                    f"{next((step for step, value in enumerate(share) if value <= 0.5), '-')}",
-                    flush=True,
-                )
-            lines[strategy] = np.median(left, axis=0)
+        medians = {
+            (strategy, shape): np.median(
+                [run(wish, strategy, seed, error, effects[shape]) for seed in range(options.seeds)],
+                axis=0,
+            )
+            for strategy in options.strategies
+            for shape, wish in wishes.items()
+        }
+        lines = {strategy: np.zeros((0, _GENERATIONS + 1)) for strategy in options.strategies}
+        for (strategy, shape), median in medians.items():
+            others = [medians[other, shape].min() for other in options.strategies]
+            lowest = min(floors[shape], *others)
+            share = (median - lowest) / max(median[0] - lowest, 1e-9)
+            lines[strategy] = np.vstack([lines[strategy], share])
+            rows.append([strategy, error, shape, round(lowest, 4), *median.round(4).tolist()])
+            halved = next((step for step, value in enumerate(share) if value <= 0.5), "-")
+            print(
+                f"{strategy:10} errs {error:.1f} {shape:13} first {median[0]:.3f} mm, "
+                f"after {_GENERATIONS} {median[-1]:.3f}, best known {lowest:.3f}; of what can be "
+                f"gained is left {share[-1]:.2f}, halved at {halved}",
+                flush=True,
+            )
         title = f"error left of what can be gained, median of shapes; user errs {error:.0%}"
-        write_plot(options.out / f"errs_{round(100 * error):02d}.png", lines, title=title)
+        curves = {strategy: np.median(line, axis=0) for strategy, line in lines.items()}
+        write_plot(options.out / f"errs_{round(100 * error):02d}.png", curves, title=title)
     with (options.out / "errors.csv").open("w", newline="") as file:
         writer = csv.writer(file)
         steps = [f"generation_{step}_mm" for step in range(_GENERATIONS + 1)]
