@@ -1,7 +1,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
+from risorius.errors import RisoriusWarning
 from risorius.head.part import PART_KINDS, Part
 from risorius.head.weld_parts import build_parts
 from risorius.landmarks import LandmarkSet, LandmarkSpec, resolve
@@ -109,3 +111,15 @@ def test_the_landmarks_of_the_made_up_face_are_on_it() -> None:
     sheet = face_sheet("bag")
     assert marks.vertex("2.4") == sheet.corners[0]
     assert marks.position("2.4")[0] > 0.0
+
+
+def test_a_head_turned_inside_out_has_the_same_parts_with_a_warning() -> None:
+    points, polygons = head_pieces("bag")["skin"]
+    turned = (points, [polygon[::-1] for polygon in polygons])
+    with pytest.warns(RisoriusWarning, match="its faces look inwards"):
+        skin = _parts(turned, head_specs("bag"))[0]["skin"]
+    expected = _parts((points, polygons), head_specs("bag"))[0]["skin"]
+    np.testing.assert_array_equal(skin.mesh.positions, expected.mesh.positions)
+    np.testing.assert_array_equal(np.sort(skin.mesh.faces), np.sort(expected.mesh.faces))
+    normals = np.cross(*np.diff(skin.mesh.positions[skin.mesh.faces], axis=1).swapaxes(0, 1))
+    assert normals[:, 2].sum() > 0.0

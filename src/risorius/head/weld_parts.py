@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 from risorius._check import FloatArray, IntArray
+from risorius.errors import RisoriusWarning
 from risorius.head.part import PART_KINDS, Part
 from risorius.landmarks.landmark_set import LandmarkSet
 from risorius.mesh.core import TriMesh
@@ -13,6 +16,9 @@ from risorius.mesh.polygon_mesh import PolygonMesh
 from risorius.mesh.welding import weld
 
 __all__ = ["build_parts"]
+
+# Faces this close to the tip of the nose look forward as a whole [mm].
+_NOSE = 15.0
 
 
 def build_parts(
@@ -31,13 +37,34 @@ def build_parts(
         Canonical; tells touching lips from a texture seam.
     """
     triangle_kind = kinds[mesh.triangle_polygon]
+    triangles = mesh.triangles
+    if _looks_inwards(positions, triangles[triangle_kind == PART_KINDS.index("skin")], landmarks):
+        warnings.warn(
+            "head: its faces look inwards; they are turned inside and kept in the output (turn "
+            "them in the modelling program if the head is to be seen from outside)",
+            RisoriusWarning,
+            stacklevel=3,
+        )
+        triangles = triangles[:, ::-1]
     parts: dict[str, Part] = {}
     for number, kind in enumerate(PART_KINDS):
-        faces = mesh.triangles[triangle_kind == number]
+        faces = triangles[triangle_kind == number]
         if len(faces):
             apart = _touching_lips(positions, landmarks) if kind == "skin" else None
             parts[kind] = _build(kind, positions, faces, apart)
     return parts
+
+
+def _looks_inwards(positions: FloatArray, faces: IntArray, landmarks: LandmarkSet) -> bool:
+    """Return whether the skin as a whole, and its nose too, show their back."""
+    if not len(faces) or "9.3" not in landmarks:
+        return False
+    corners = positions[faces]
+    areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    middles = corners.mean(axis=1)
+    volume = float(np.einsum("ij,ij", areas, middles - middles.mean(axis=0)))
+    nose = np.linalg.norm(middles - landmarks.position("9.3"), axis=1) < _NOSE
+    return volume < 0.0 and float(areas[nose, 2].sum()) < 0.0
 
 
 def _build(kind: str, positions: FloatArray, faces: IntArray, apart: IntArray | None) -> Part:
