@@ -13,7 +13,7 @@ test:
 check:
 	$(PYTHON) -m ruff check .
 	$(PYTHON) -m ruff format --check .
-	$(PYTHON) -m pyright
+	$(PYTHON) -m pyright --pythonpath $(PYTHON)
 	$(dir $(PYTHON))lint-imports
 	$(PYTHON) -m pytest
 

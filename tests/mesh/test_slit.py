@@ -101,14 +101,31 @@ def test_welded_lips_are_refused_with_the_way_out() -> None:
 
 def test_lines_that_share_a_vertex_are_refused() -> None:
     sheet = slit_sheet("slit")
+    top = sheet.nearest(0.0, 5.0)
+    found = find_slit(
+        sheet.mesh,
+        corners=sheet.corners,
+        upper=[top],
+        lower=[sheet.nearest(0.0, -5.0)],
+        exact_corners=True,
+    )
     with pytest.raises(MeshError, match=r"share vertex \d+; they are welded, cut the mesh open"):
         find_slit(
             sheet.mesh,
             corners=sheet.corners,
-            upper=[sheet.nearest(0.0, 30.0)],
-            lower=[sheet.nearest(0.0, 50.0)],
+            upper=[top],
+            lower=[int(found.upper[1])],
             exact_corners=True,
         )
+
+
+@pytest.mark.parametrize("turn", [0, 1, 2])
+def test_lines_do_not_depend_on_the_corner_that_a_face_starts_with(turn: int) -> None:
+    sheet = slit_sheet("slit")
+    turned = TriMesh(sheet.mesh.positions, np.roll(sheet.mesh.faces, turn, axis=1))
+    hints = {"upper": [sheet.nearest(0.0, 5.0)], "lower": [sheet.nearest(0.0, -5.0)]}
+    slit = find_slit(turned, corners=sheet.corners, exact_corners=True, **hints)
+    assert not np.intersect1d(slit.upper[1:-1], slit.lower[1:-1]).size
 
 
 def test_corners_at_one_point_are_refused() -> None:

@@ -125,7 +125,11 @@ def find_slit(
     else:
         ends = _commissures(mesh, graph, above, below, corners)
     upper_line = _trace(graph, [ends[0], *upper, ends[1]], prefer=down, allowed=on_upper)
-    lower_line = _trace(graph, [ends[0], *lower, ends[1]], prefer=up, allowed=~on_upper)
+    taken = np.zeros(mesh.vertex_count, bool)
+    taken[upper_line[1:-1]] = True
+    lower_line = _trace(
+        graph, [ends[0], *lower, ends[1]], prefer=up, allowed=~on_upper, taken=taken
+    )
     shared = np.intersect1d(upper_line[1:-1], lower_line[1:-1])
     if len(shared):
         raise MeshError(
@@ -190,14 +194,25 @@ def _commissures(
 
 
 def _trace(
-    graph: csr_matrix, stops: Sequence[int], *, prefer: BoolArray, allowed: BoolArray
+    graph: csr_matrix,
+    stops: Sequence[int],
+    *,
+    prefer: BoolArray,
+    allowed: BoolArray,
+    taken: BoolArray | None = None,
 ) -> IntArray:
-    """Return the cheapest line (k,) through `stops`, on `allowed` vertices where possible."""
+    """Return the cheapest line (k,) through `stops`, on `allowed` vertices where possible.
+
+    Vertices that are `taken` by the other line are used last of all.
+    """
     rows = np.repeat(np.arange(graph.shape[0]), np.diff(graph.indptr))
     cost = graph.data * np.where(prefer[rows] & prefer[graph.indices], _PREFERENCE, 1.0)
     closed = ~allowed
     closed[np.asarray(stops)] = False
     cost = np.where(closed[rows] | closed[graph.indices], cost * 1e4, cost)
+    if taken is not None:
+        # At a corner the sides may be labelled askew; the other line is worse than that.
+        cost = np.where(taken[rows] | taken[graph.indices], cost * 1e4, cost)
     weighted = csr_matrix((cost, graph.indices, graph.indptr), shape=graph.shape)
     line: list[int] = [stops[0]]
     for start, goal in pairwise(stops):

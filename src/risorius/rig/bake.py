@@ -51,9 +51,7 @@ def bake(
             progress(number, len(poses), name)
         moved = face.displace(pose)
         moved[(moved * moved).sum(axis=1) <= _STILL * _STILL] = 0.0
-        targets.append(
-            MorphTarget.from_dense(name, head.frame.vectors_to_input(moved), pose=pose)
-        )
+        targets.append(MorphTarget.from_dense(name, head.frame.vectors_to_input(moved), pose=pose))
     return empty_rig(head).with_targets(
         targets, controls=face.controls, left_out=dict(left_out or {})
     )
