@@ -100,23 +100,14 @@ def test_welded_lips_are_refused_with_the_way_out() -> None:
 
 
 def test_lines_that_share_a_vertex_are_refused() -> None:
-    sheet = slit_sheet("slit")
-    top = sheet.nearest(0.0, 5.0)
-    found = find_slit(
-        sheet.mesh,
-        corners=sheet.corners,
-        upper=[top],
-        lower=[sheet.nearest(0.0, -5.0)],
-        exact_corners=True,
+    # Two diamonds that hang together at one vertex: both lines must pass it.
+    plane = 10.0 * np.array([[0, 0], [1, 1], [1, -1], [2, 0], [3, 1], [3, -1], [4, 0]], float)
+    mesh = TriMesh(
+        np.column_stack([plane, np.zeros(7)]),
+        np.array([[0, 2, 1], [1, 2, 3], [3, 5, 4], [4, 5, 6]]),
     )
-    with pytest.raises(MeshError, match=r"share vertex \d+; they are welded, cut the mesh open"):
-        find_slit(
-            sheet.mesh,
-            corners=sheet.corners,
-            upper=[top],
-            lower=[int(found.upper[1])],
-            exact_corners=True,
-        )
+    with pytest.raises(MeshError, match=r"share vertex 3; they are welded, cut the mesh open"):
+        find_slit(mesh, corners=(0, 6), upper=[1], lower=[2], exact_corners=True)
 
 
 @pytest.mark.parametrize("turn", [0, 1, 2])

@@ -71,7 +71,24 @@ class _Eye:
 
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """What the posed skin may not run into, bound to one head."""
+    """What the posed skin may not run into, bound to one head.
+
+    Parameters
+    ----------
+    skin : Skin
+    mechanics : Mechanics
+    vertices : (k,) int32
+        Skin vertices that may meet teeth.
+    average : (k, k) sparse
+        Mean over the neighbours among them.
+    shown : (k,) bool
+        Which of them can be seen; the hidden ones are not pushed.
+    arches : mapping
+        Upper and lower teeth.
+    eyes : tuple
+        Eyeballs and the skin round them.
+    lips : LipContact
+    """
 
     skin: Skin
     mechanics: Mechanics

@@ -60,8 +60,8 @@ def lay_fibres(muscle_map: MuscleMap, skull: Skull) -> dict[str, FloatArray]:
 
     Returns
     -------
-    dict of str to (samples, fibres, 3) float64
-        From origin to insertion [mm].
+    dict of str to array
+        (s, f, 3) float64 each: samples from origin to insertion, fibres side by side [mm].
     """
     result: dict[str, FloatArray] = {}
     tops: dict[str, TriMesh] = {}

@@ -31,7 +31,9 @@ class LipContact:
         Vertices of the lines.
     rest : (n, 3) float64
         Skin at rest [mm].
-    gap : (stations,) float64
+    places : (s,) float64
+        Stations along the mouth, from its right corner to its left [mm].
+    gap : (s,) float64
         Height of the upper over the lower line at rest, at most 0 [mm].
     station : (n,) float64
         Place of each vertex along the mouth, in stations.
