@@ -23,7 +23,7 @@ def outwards(points: FloatArray) -> FloatArray:
     """Return the unit direction (q, 3) out of the built-in skull at `points` (q, 3).
 
     Away from the axis of a capsule: smooth everywhere, where averaged normals of rims and teeth
-    point anywhere (study S10). Canonical frame of the built-in head.
+    point anywhere (finding S10). Canonical frame of the built-in head.
     """
     shift = builtin_head().frame.to_canonical(np.zeros((1, 3)))[0]
     centre = np.zeros_like(points)
