@@ -138,7 +138,7 @@ def contract(fibres: FloatArray, contraction: float, *, fixed_point: float = 0.0
 
     The point at arc length l moves to ``l0 + (1 - c)(l - l0)`` with l0 the fixed point: 0 holds
     the origin, a point inside the fibre draws both ends towards it (the brow rises and the upper
-    forehead comes down; study T1).
+    forehead comes down; finding T1).
 
     Parameters
     ----------

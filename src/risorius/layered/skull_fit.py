@@ -29,7 +29,7 @@ __all__ = ["MIRROR", "Carry", "FittedSkull", "fit_skull", "hidden_skin"]
 
 MIRROR = np.array([-1.0, 1.0, 1.0])
 
-# Directions (yaw, pitch) [deg] of the extra rays: cranium, temples, cheeks (study S9).
+# Directions (yaw, pitch) [deg] of the extra rays: cranium, temples, cheeks (finding S9).
 _RAYS = (
     (0, 60), (0, 30), (30, 60), (-30, 60), (60, 35), (-60, 35), (55, 12), (-55, 12), (125, 20),
     (-125, 20), (180, 10), (180, 45), (120, 60), (-120, 60), (50, -25), (-50, -25), (35, -35),

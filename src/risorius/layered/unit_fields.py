@@ -35,10 +35,6 @@ class FieldSolver:
     Minimises ``sum m (p |u|^2 + k w |u - d|^2) + a^2 |grad u|^2 + b^4 |lap u|^2`` with p the
     passive stiffness, w and d weight and goal of the muscle: one symmetric positive definite
     system per muscle, restricted to the skin that it can reach.
-
-    References
-    ----------
-    Layered face study 2, step 4.
     """
 
     skin: Skin

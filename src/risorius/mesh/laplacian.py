@@ -92,10 +92,6 @@ class SmoothField:
     -----
     Pieces of the mesh without any positive stiffness know no target; the field is zero there.
     Unused vertices take their own target if their stiffness is positive.
-
-    References
-    ----------
-    Layered face study, unit fields (step 4).
     """
 
     def __init__(
