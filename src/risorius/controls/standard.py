@@ -12,6 +12,7 @@ __all__ = [
     "MUSCLES",
     "SINGLE_MUSCLES",
     "bilateral",
+    "controls_of_muscles",
     "device_controls",
     "muscle_controls",
     "sided",
@@ -101,3 +102,26 @@ def device_controls() -> tuple[Control, ...]:
         result.append(Control(left, low, high, 0.0, unit, group, right, sign))
         result.append(Control(right, low, high, 0.0, unit, group, left, sign))
     return tuple(result)
+
+
+def controls_of_muscles(names: tuple[str, ...]) -> tuple[Control, ...]:
+    """Return the controls of a face's muscles: registered ones first, in registry order.
+
+    Muscles that a person named freely follow in the order of `names`; a name that ends in ``_l``
+    or ``_r`` mirrors the other side where that is among them.
+    """
+    known = [
+        control
+        for base in (*MUSCLES, *SINGLE_MUSCLES)
+        for control in muscle_controls(base)
+        if control.name in names
+    ]
+    listed = {control.name for control in known}
+    own: list[Control] = []
+    for name in names:
+        if name in listed:
+            continue
+        other = name[:-2] + {"_l": "_r", "_r": "_l"}.get(name[-2:], name[-2:])
+        mirror = other if other in names else name
+        own.append(Control(name, 0.0, 1.0, 0.0, "1", "muscle", mirror))
+    return tuple(known + own)

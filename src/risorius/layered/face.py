@@ -12,7 +12,7 @@ from risorius._check import FloatArray, IntArray
 from risorius.anatomy.jaw import JawPose
 from risorius.anatomy.mechanics import Mechanics
 from risorius.controls.control import Control, Pose, resolve_pose
-from risorius.controls.standard import MUSCLES, SINGLE_MUSCLES, muscle_controls
+from risorius.controls.standard import controls_of_muscles
 from risorius.head.head import Head
 from risorius.layered.binding import bind_muscles
 from risorius.layered.contact import Contact
@@ -102,7 +102,7 @@ class LayeredFace:
         fitted = fit_skull(bones, head, symmetric=partner is not None, hidden=hidden)
         skin = build_skin(moving, fitted, partner)
         binding = bind_muscles(drawn, lay_fibres(drawn, bones), fitted, skin, moving)
-        controls = _controls(tuple(binding.fields)) + moving.controls
+        controls = controls_of_muscles(tuple(binding.fields)) + moving.controls
         correctives = Correctives.build(skin, moving)
         return LayeredFace(
             head, drawn, moving, fitted, skin, binding.fibres, binding.pulls, binding.fields,
@@ -197,22 +197,3 @@ class LayeredFace:
                 moved = flat.reshape(moved.shape)
             result[name] = moved
         return result
-
-
-def _controls(names: tuple[str, ...]) -> tuple[Control, ...]:
-    """Return controls for the muscles of a map: registered ones first, in registry order."""
-    known = [
-        control
-        for base in (*MUSCLES, *SINGLE_MUSCLES)
-        for control in muscle_controls(base)
-        if control.name in names
-    ]
-    listed = {control.name for control in known}
-    own: list[Control] = []
-    for name in names:
-        if name in listed:
-            continue
-        other = name[:-2] + {"_l": "_r", "_r": "_l"}.get(name[-2:], name[-2:])
-        mirror = other if other in names else name
-        own.append(Control(name, 0.0, 1.0, 0.0, "1", "muscle", mirror))
-    return tuple(known + own)

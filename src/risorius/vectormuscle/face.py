@@ -11,7 +11,7 @@ from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.regions import Regions, find_regions
 from risorius.anatomy.support import support_directions
 from risorius.controls.control import Control, Pose, resolve_pose
-from risorius.controls.standard import MUSCLES, SINGLE_MUSCLES, muscle_controls
+from risorius.controls.standard import controls_of_muscles
 from risorius.errors import ParameterError
 from risorius.head.head import Head
 from risorius.mesh.normals import vertex_normals
@@ -127,7 +127,7 @@ class VectorFace:
         )
         bound = {muscle.name: muscle.bind(context) for muscle in fitted.muscles}
         wrinkles, notes = bind_all_wrinkles(fitted.muscles, context, faces=mesh.faces)
-        controls = _muscle_controls(tuple(bound)) + moving.controls
+        controls = controls_of_muscles(tuple(bound)) + moving.controls
         notes = moving.notes + notes
         return VectorFace(head, fitted, moving, bound, controls, chosen, wrinkles, notes, context)
 
@@ -179,22 +179,3 @@ class VectorFace:
     def pose(self, pose: Pose) -> FloatArray:
         """Return the posed positions (n, 3) [mm, canonical frame] of every input vertex."""
         return self.head.positions + self.displace(pose)
-
-
-def _muscle_controls(names: tuple[str, ...]) -> tuple[Control, ...]:
-    """Return controls for the muscles of a set: registered ones first, in registry order."""
-    known = [
-        control
-        for base in (*MUSCLES, *SINGLE_MUSCLES)
-        for control in muscle_controls(base)
-        if control.name in names
-    ]
-    listed = {control.name for control in known}
-    own: list[Control] = []
-    for name in names:
-        if name in listed:
-            continue
-        other = name[:-2] + {"_l": "_r", "_r": "_l"}.get(name[-2:], name[-2:])
-        mirror = other if other in names else name
-        own.append(Control(name, 0.0, 1.0, 0.0, "1", "muscle", mirror))
-    return tuple(known + own)

@@ -12,8 +12,8 @@ from risorius.anatomy.jaw import JawPose
 from risorius.anatomy.mechanics import Mechanics
 from risorius.controls.control import Control, Pose, resolve_pose
 from risorius.controls.presets import mirrored
+from risorius.controls.standard import controls_of_muscles
 from risorius.head.head import Head
-from risorius.layered.face import _controls as muscle_controls_of
 from risorius.layered.faithful.anatomy import Anatomy, lay_anatomy, rebuilt
 from risorius.layered.faithful.binding import Anchors, bind_skin
 from risorius.layered.faithful.influence import influence_map
@@ -118,7 +118,7 @@ class FaithfulFace:
         return FaithfulFace(
             head, moving, MovingMuscles(anatomy, p), anchors, influence, skin,
             build_teeth(moving, fitted.scale), partner,
-            muscle_controls_of(names) + moving.controls, p,
+            controls_of_muscles(names) + moving.controls, p,
         )  # fmt: skip
 
     @property
