@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 from risorius.anatomy.jaw import JawPose
+from risorius.anatomy.skull import builtin_skull
 from risorius.anatomy.template import builtin_head
 from risorius.controls.presets import EMOTIONS, default_presets
 from risorius.layered.faithful import FaithfulFace, FaithfulParameters
 from risorius.layered.faithful.anatomy import Anatomy, LaidMuscle, lay_anatomy, rebuilt
 from risorius.layered.faithful.motion import MovingMuscles
 from risorius.layered.muscle_map import default_muscle_map
-from risorius.layered.skull import builtin_skull
 from risorius.mesh.connectivity import edge_faces
 from risorius.mesh.core import TriMesh
 from risorius.mesh.normals import face_normals

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from risorius.anatomy.skull import builtin_skull
 from risorius.layered.fibres import contract, lay_fibres, refine
 from risorius.layered.muscle_map import default_muscle_map
-from risorius.layered.skull import builtin_skull
 from risorius.spatial import closest_points
 
 

@@ -7,18 +7,14 @@ from risorius.layered.muscle_map import (
     parse_muscle_map,
     read_muscle_map,
 )
-from risorius.layered.skull import Skull, builtin_skull, load_skull
 from risorius.layered.solve import Solved, landmark_target, solve_pose
 
 __all__ = [
     "LayeredFace",
     "MuscleMap",
-    "Skull",
     "Solved",
-    "builtin_skull",
     "default_muscle_map",
     "landmark_target",
-    "load_skull",
     "parse_muscle_map",
     "read_muscle_map",
     "solve_pose",

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from risorius._check import FloatArray
 from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.skull_fit import MIRROR, FittedSkull
 from risorius.layered.muscle import EyeAction, MouthAction, Muscle, SheetAction
 from risorius.layered.muscle_map import MuscleMap
 from risorius.layered.pulls import (
@@ -21,7 +22,6 @@ from risorius.layered.pulls import (
     upper_lid_pull,
 )
 from risorius.layered.skin import Skin
-from risorius.layered.skull_fit import MIRROR, FittedSkull
 from risorius.layered.unit_fields import FieldSolver
 
 __all__ = ["Binding", "bind_muscles"]

@@ -11,6 +11,8 @@ from scipy.spatial import cKDTree
 from risorius._check import FloatArray, IntArray
 from risorius.anatomy.jaw import JawPose
 from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.skull import Skull, builtin_skull
+from risorius.anatomy.skull_fit import FittedSkull, fit_skull, hidden_skin
 from risorius.controls.control import Control, Pose, resolve_pose
 from risorius.controls.standard import controls_of_muscles
 from risorius.head.head import Head
@@ -22,8 +24,6 @@ from risorius.layered.muscle import SheetAction
 from risorius.layered.muscle_map import MuscleMap, default_muscle_map
 from risorius.layered.pulls import Pull
 from risorius.layered.skin import Skin, build_skin, mirror_partners
-from risorius.layered.skull import Skull, builtin_skull
-from risorius.layered.skull_fit import FittedSkull, fit_skull, hidden_skin
 from risorius.layered.solve import Solved, solve_pose
 
 __all__ = ["LayeredFace"]

@@ -8,11 +8,11 @@ from itertools import pairwise
 import numpy as np
 
 from risorius._check import FloatArray, IntArray
+from risorius.anatomy.outwards import outwards, unit
+from risorius.anatomy.skull import Skull
 from risorius.anatomy.template import builtin_head
 from risorius.layered.muscle import Muscle, Sheet
 from risorius.layered.muscle_map import MuscleMap
-from risorius.layered.outwards import outwards, unit
-from risorius.layered.skull import Skull
 from risorius.mesh.core import TriMesh
 from risorius.spatial.raycast import Scene
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from risorius._check import FloatArray
+from risorius.anatomy.outwards import unit
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.head.head import Head
-from risorius.layered.outwards import unit
 from risorius.mesh.lips import LipSides
 
 __all__ = ["Mouth", "lip_body", "measure_mouth"]

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.skull import Skull, builtin_skull, load_skull
 from risorius.errors import ParameterError
 from risorius.head.head import Head
 from risorius.layered.face import LayeredFace
 from risorius.layered.faithful import FaithfulFace
 from risorius.layered.muscle_map import MuscleMap, default_muscle_map, read_muscle_map
-from risorius.layered.skull import Skull, builtin_skull, load_skull
 from risorius.project.project import Project
 from risorius.rig.face import Face
 

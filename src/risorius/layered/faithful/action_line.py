@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from risorius._check import BoolArray, FloatArray, IntArray, as_number
+from risorius.anatomy.outwards import unit
 from risorius.errors import ParameterError, ShapeError
 from risorius.layered.faithful.parameters import FaithfulParameters
-from risorius.layered.outwards import unit
 from risorius.mesh.core import TriMesh
 from risorius.mesh.surface_point import SurfacePoints
 from risorius.spatial.closest import closest_points

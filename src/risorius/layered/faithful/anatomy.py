@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from risorius._check import FloatArray, IntArray
+from risorius.anatomy.outwards import outwards, unit
+from risorius.anatomy.skull import Skull
 from risorius.anatomy.template import builtin_head
 from risorius.layered.faithful.action_line import Ground
 from risorius.layered.faithful.muscle_mesh import MuscleMesh, box_mesh, ring_mesh
@@ -16,8 +18,6 @@ from risorius.layered.faithful.sheet import SheetLines, lay_sheet
 from risorius.layered.faithful.sphincter import RingLines, lay_ring
 from risorius.layered.muscle import Muscle, Ring, Sheet
 from risorius.layered.muscle_map import MuscleMap
-from risorius.layered.outwards import outwards, unit
-from risorius.layered.skull import Skull
 from risorius.mesh.normals import vertex_normals
 
 __all__ = ["Anatomy", "LaidMuscle", "Surface", "lay_anatomy", "lay_muscle", "rebuilt"]

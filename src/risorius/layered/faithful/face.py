@@ -10,6 +10,8 @@ import numpy as np
 from risorius._check import FloatArray, IntArray
 from risorius.anatomy.jaw import JawPose
 from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.skull import Skull, builtin_skull
+from risorius.anatomy.skull_fit import MIRROR, FittedSkull, fit_skull
 from risorius.controls.control import Control, Pose, resolve_pose
 from risorius.controls.presets import mirrored
 from risorius.controls.standard import controls_of_muscles
@@ -24,8 +26,6 @@ from risorius.layered.faithful.skin import SkinModel, build_skin_model
 from risorius.layered.faithful.teeth import Teeth, build_teeth
 from risorius.layered.muscle_map import MuscleMap, default_muscle_map
 from risorius.layered.skin import mirror_partners
-from risorius.layered.skull import Skull, builtin_skull
-from risorius.layered.skull_fit import MIRROR, FittedSkull, fit_skull
 from risorius.solvers.model import State
 from risorius.solvers.pbd import Solver
 

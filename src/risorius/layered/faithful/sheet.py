@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from risorius._check import FloatArray, IntArray
+from risorius.anatomy.outwards import unit
 from risorius.layered.faithful.action_line import ActionLine, Ground, sample_line
 from risorius.layered.faithful.contour import Contour, contour_vertices, fill_grid, harmonic_fill
 from risorius.layered.faithful.parameters import FaithfulParameters
 from risorius.layered.muscle import Sheet
-from risorius.layered.outwards import unit
 
 __all__ = ["SheetLines", "guarded", "lay_sheet"]
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from risorius._check import FloatArray, IntArray
+from risorius.anatomy.outwards import unit
 from risorius.layered.faithful.action_line import ActionLine, Ground, sample_line
 from risorius.layered.faithful.sheet import guarded
 from risorius.layered.muscle import Ring
-from risorius.layered.outwards import unit
 
 __all__ = ["RingLines", "constrict", "lay_ring", "paired"]
 

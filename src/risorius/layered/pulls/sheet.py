@@ -6,11 +6,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from risorius._check import FloatArray
+from risorius.anatomy.outwards import unit
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.layered.fibres import contract, refine
 from risorius.layered.mouth import lip_body
 from risorius.layered.muscle import Muscle, SheetAction
-from risorius.layered.outwards import unit
 from risorius.layered.pulls.pull import Pull
 from risorius.layered.skin import Skin
 

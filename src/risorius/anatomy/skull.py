@@ -12,11 +12,11 @@ import numpy as np
 
 from risorius import _formats
 from risorius._check import BoolArray, FloatArray, IntArray
+from risorius.anatomy.bone_landmarks import read_bone_landmarks
 from risorius.anatomy.template import builtin_head
 from risorius.errors import LandmarkError, MeshError
 from risorius.head.head import Head
 from risorius.landmarks.landmark_set import LandmarkSet, resolve
-from risorius.layered.bone_landmarks import read_bone_landmarks
 from risorius.mesh.core import TriMesh
 from risorius.mesh.polygon_mesh import PolygonMesh
 from risorius.spatial.hull import convex_hull

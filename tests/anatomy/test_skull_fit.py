@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from risorius.anatomy.skull import builtin_skull, load_skull
+from risorius.anatomy.skull_fit import fit_skull
 from risorius.errors import LandmarkError, MeshError
 from risorius.head import Head
 from risorius.layered import LayeredFace
 from risorius.layered.muscle_map import default_muscle_map
-from risorius.layered.skull import builtin_skull, load_skull
-from risorius.layered.skull_fit import fit_skull
 from tests.face_fixtures import made_up_head
 from tests.layered.faces import builtin_layered
 

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from risorius.anatomy import load_skull
+from risorius.anatomy.bone_landmarks import read_bone_landmarks
 from risorius.anatomy.template import builtin_head
-from risorius.layered import LayeredFace, default_muscle_map, load_skull
-from risorius.layered.bone_landmarks import read_bone_landmarks
+from risorius.layered import LayeredFace, default_muscle_map
 from risorius.mesh.polygon_mesh import PolygonMesh
 from tests.layered.faces import builtin_layered
 

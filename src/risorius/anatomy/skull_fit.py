@@ -10,13 +10,13 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from risorius._check import BoolArray, FloatArray
+from risorius.anatomy.outwards import unit
+from risorius.anatomy.skull import Skull
 from risorius.anatomy.template import SURE_LANDMARKS, builtin_head
 from risorius.errors import LandmarkError
 from risorius.head.eyes import find_head_lids
 from risorius.head.head import Head
 from risorius.head.mouth import find_head_lips
-from risorius.layered.outwards import unit
-from risorius.layered.skull import Skull
 from risorius.mesh.core import TriMesh
 from risorius.mesh.lids import LidMargins
 from risorius.mesh.lips import LipSides
