@@ -12,12 +12,14 @@ from risorius import _formats
 
 if TYPE_CHECKING:
     from risorius.anatomy.template import builtin_head as builtin_head
+    from risorius.cloning.clone import clone as clone
     from risorius.controls.control import Control as Control
     from risorius.controls.control import Pose as Pose
     from risorius.errors import RisoriusError as RisoriusError
     from risorius.errors import RisoriusWarning as RisoriusWarning
     from risorius.head.head import Head as Head
     from risorius.head.head import HeadOptions as HeadOptions
+    from risorius.layered.face import LayeredFace as LayeredFace
     from risorius.rig.bake import bake as bake
     from risorius.rig.face import Face as Face
     from risorius.rig.rig import MorphTarget as MorphTarget
@@ -32,6 +34,7 @@ _HOME = {
     "Face": "risorius.rig.face",
     "Head": "risorius.head.head",
     "HeadOptions": "risorius.head.head",
+    "LayeredFace": "risorius.layered.face",
     "MorphTarget": "risorius.rig.rig",
     "Pose": "risorius.controls.control",
     "Rig": "risorius.rig.rig",
@@ -41,6 +44,7 @@ _HOME = {
     "VectorParameters": "risorius.vectormuscle.face",
     "bake": "risorius.rig.bake",
     "builtin_head": "risorius.anatomy.template",
+    "clone": "risorius.cloning.clone",
 }
 
 __all__ = [
@@ -48,6 +52,7 @@ __all__ = [
     "Face",
     "Head",
     "HeadOptions",
+    "LayeredFace",
     "MorphTarget",
     "Pose",
     "Rig",
@@ -58,6 +63,7 @@ __all__ = [
     "__version__",
     "bake",
     "builtin_head",
+    "clone",
 ]
 
 # The formats announce themselves when their package is imported: on the first read or write.

@@ -58,7 +58,7 @@ def test_a_full_disk_keeps_the_old_file(
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_a_signal_in_the_middle_of_the_work_leaves_only_whole_files(tmp_path: Path) -> None:
     out = tmp_path / "demo"
-    command = "from risorius.cli.main import run; run()"
+    command = "from risorius.cli.entry import run; run()"
     with subprocess.Popen(
         [sys.executable, "-c", command, "demo", "-o", str(out)],
         stdout=subprocess.PIPE,
@@ -76,3 +76,22 @@ def test_a_signal_in_the_middle_of_the_work_leaves_only_whole_files(tmp_path: Pa
     for picture in out.glob("*.png"):
         read_png(picture)
     assert not list(out.glob(".*"))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+@pytest.mark.parametrize("delay", [0.0, 0.1, 0.3, 0.6, 1.0])
+def test_a_signal_while_the_libraries_load_is_no_traceback(tmp_path: Path, delay: float) -> None:
+    command = "from risorius.cli.entry import run; print(flush=True); run()"
+    with subprocess.Popen(
+        [sys.executable, "-c", command, "demo", "-o", str(tmp_path / "demo")],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        time.sleep(delay)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=120)
+    assert process.returncode == 130, errors
+    assert "Traceback" not in errors

@@ -61,7 +61,7 @@ def test_an_unknown_verb_or_option_ends_with_2() -> None:
 def test_the_first_answer_loads_nothing_heavy() -> None:
     code = (
         "import sys; sys.argv = ['risorius', '--help']\n"
-        "from risorius.cli.main import run\n"
+        "from risorius.cli.entry import run\n"
         "try: run()\n"
         "except SystemExit: pass\n"
         "print(*sys.modules)"

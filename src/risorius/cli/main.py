@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Annotated
 
 import typer
@@ -24,9 +23,8 @@ from risorius.cli import (
     transfer,
     tune,
 )
-from risorius.cli.exits import INTERRUPTED
 
-__all__ = ["app", "run"]
+__all__ = ["app"]
 
 _HELP = """Turn a static 3D head into a blendshape rig that moves by muscles.
 
@@ -79,11 +77,3 @@ app.command("convert")(convert.convert)
 app.command("landmarks")(landmarks.landmarks)
 app.command("bench")(bench.bench)
 app.add_typer(project.app, name="project")
-
-
-def run() -> None:
-    """Run the program; the entry point of the console script."""
-    try:
-        app()
-    except KeyboardInterrupt:
-        sys.exit(INTERRUPTED)

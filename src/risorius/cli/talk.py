@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json as json_text
 import os
+import signal
 import sys
+import threading
 import time
 import traceback
 import warnings
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 import typer
@@ -44,6 +47,7 @@ class Talk:
         self.answer: dict[str, Any] = {}
         self.notes: list[str] = []
         self.seconds: dict[str, float] = {}
+        self.interrupted = False
 
     def say(self, text: str = "") -> None:
         """Print a line for people."""
@@ -79,6 +83,7 @@ class Talk:
     def stage(self, name: str) -> Generator[Tick]:
         """Measure a stage, and show its progress on a terminal."""
         start = time.perf_counter()
+        self._stop_if_interrupted()
         try:
             if self.quiet or not sys.stderr.isatty():
                 yield _no_progress
@@ -88,6 +93,12 @@ class Talk:
         finally:
             passed = time.perf_counter() - start
             self.seconds[name] = self.seconds.get(name, 0.0) + passed
+        self._stop_if_interrupted()
+
+    def _stop_if_interrupted(self) -> None:
+        # Python drops an interruption that falls into a finaliser or a callback of a library.
+        if self.interrupted:
+            raise KeyboardInterrupt
 
     def say_seconds(self) -> None:
         """Print how long each stage took."""
@@ -120,7 +131,7 @@ def talking(*, json: bool, quiet: bool, debug: bool) -> Generator[Talk]:
         With the exit code, unless all went well.
     """
     talk = Talk(json=json, quiet=quiet, debug=debug)
-    with warnings.catch_warnings():
+    with _noticing_ctrl_c(talk), warnings.catch_warnings():
         if not debug:
             warnings.simplefilter("ignore")
         warnings.simplefilter("always", RisoriusWarning)
@@ -152,6 +163,23 @@ def talking(*, json: bool, quiet: bool, debug: bool) -> Generator[Talk]:
             _fail(talk, _system_error(error), REFUSED)
         else:
             talk.finish(ok=True)
+
+
+@contextmanager
+def _noticing_ctrl_c(talk: Talk) -> Generator[None]:
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def interrupt(_signal: int, _frame: FrameType | None) -> None:
+        talk.interrupted = True
+        raise KeyboardInterrupt
+
+    previous = signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, previous)
 
 
 def _fail(talk: Talk, text: str, code: int) -> None:
