@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from risorius._check import FloatArray
 from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.skin import Skin
 from risorius.anatomy.skull_fit import MIRROR, FittedSkull
 from risorius.layered.muscle import EyeAction, MouthAction, Muscle, SheetAction
 from risorius.layered.muscle_map import MuscleMap
@@ -21,7 +22,6 @@ from risorius.layered.pulls import (
     submental_pull,
     upper_lid_pull,
 )
-from risorius.layered.skin import Skin
 from risorius.layered.unit_fields import FieldSolver
 
 __all__ = ["Binding", "bind_muscles"]

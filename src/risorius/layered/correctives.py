@@ -11,8 +11,8 @@ from scipy.sparse import coo_matrix, csc_matrix, csr_matrix, diags
 from risorius._check import FloatArray, IntArray
 from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.outwards import unit
+from risorius.anatomy.skin import Skin
 from risorius.layered.kernels.turns import best_turns, turn_forces
-from risorius.layered.skin import Skin
 from risorius.layered.tissue import swelling_depth
 from risorius.mesh.factorisation import factorise
 

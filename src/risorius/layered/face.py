@@ -9,21 +9,21 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from risorius._check import FloatArray, IntArray
+from risorius.anatomy.contact import Contact
 from risorius.anatomy.jaw import JawPose
 from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.skin import Skin, build_skin, mirror_partners
 from risorius.anatomy.skull import Skull, builtin_skull
 from risorius.anatomy.skull_fit import FittedSkull, fit_skull, hidden_skin
 from risorius.controls.control import Control, Pose, resolve_pose
 from risorius.controls.standard import controls_of_muscles
 from risorius.head.head import Head
 from risorius.layered.binding import bind_muscles
-from risorius.layered.contact import Contact
 from risorius.layered.correctives import Correctives
 from risorius.layered.fibres import contract, lay_fibres
 from risorius.layered.muscle import SheetAction
 from risorius.layered.muscle_map import MuscleMap, default_muscle_map
 from risorius.layered.pulls import Pull
-from risorius.layered.skin import Skin, build_skin, mirror_partners
 from risorius.layered.solve import Solved, solve_pose
 
 __all__ = ["LayeredFace"]

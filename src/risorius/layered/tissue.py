@@ -6,8 +6,8 @@ import numpy as np
 
 from risorius._check import FloatArray
 from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.skin import Skin
 from risorius.anatomy.smooth_step import smooth_step
-from risorius.layered.skin import Skin
 
 __all__ = ["swelling_depth"]
 

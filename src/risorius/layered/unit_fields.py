@@ -11,9 +11,9 @@ from scipy.sparse import coo_matrix, csc_matrix, csr_matrix, diags
 from scipy.spatial import cKDTree
 
 from risorius._check import FloatArray
+from risorius.anatomy.skin import Skin
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.layered.pulls.pull import Pull
-from risorius.layered.skin import Skin
 from risorius.mesh.factorisation import factorise
 from risorius.mesh.lips import LipSides
 

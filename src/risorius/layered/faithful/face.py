@@ -10,6 +10,7 @@ import numpy as np
 from risorius._check import FloatArray, IntArray
 from risorius.anatomy.jaw import JawPose
 from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.skin import mirror_partners
 from risorius.anatomy.skull import Skull, builtin_skull
 from risorius.anatomy.skull_fit import MIRROR, FittedSkull, fit_skull
 from risorius.controls.control import Control, Pose, resolve_pose
@@ -25,7 +26,6 @@ from risorius.layered.faithful.parameters import FaithfulParameters
 from risorius.layered.faithful.skin import SkinModel, build_skin_model
 from risorius.layered.faithful.teeth import Teeth, build_teeth
 from risorius.layered.muscle_map import MuscleMap, default_muscle_map
-from risorius.layered.skin import mirror_partners
 from risorius.solvers.model import State
 from risorius.solvers.pbd import Solver
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from risorius._check import FloatArray
+from risorius.anatomy.skin import Skin
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.layered.muscle import EyeAction
 from risorius.layered.pulls.pull import Pull
-from risorius.layered.skin import Skin
 
 __all__ = ["eye_pull"]
 

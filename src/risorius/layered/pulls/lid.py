@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from risorius._check import FloatArray
+from risorius.anatomy.skin import Skin
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.layered.pulls.pull import Pull
-from risorius.layered.skin import Skin
 from risorius.mesh.lids import LidMargins
 
 __all__ = ["lower_lid_pull", "upper_lid_pull"]

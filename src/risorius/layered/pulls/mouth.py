@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from risorius.anatomy.skin import Skin
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.layered.muscle import MouthAction
 from risorius.layered.pulls.pull import Pull
-from risorius.layered.skin import Skin
 
 __all__ = ["mouth_pull"]
 

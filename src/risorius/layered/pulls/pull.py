@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from risorius._check import FloatArray
-from risorius.layered.skin import Skin
+from risorius.anatomy.skin import Skin
 
 __all__ = ["Pull"]
 

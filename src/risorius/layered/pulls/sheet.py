@@ -6,13 +6,13 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from risorius._check import FloatArray
+from risorius.anatomy.mouth import lip_body
 from risorius.anatomy.outwards import unit
+from risorius.anatomy.skin import Skin
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.layered.fibres import contract, refine
-from risorius.layered.mouth import lip_body
 from risorius.layered.muscle import Muscle, SheetAction
 from risorius.layered.pulls.pull import Pull
-from risorius.layered.skin import Skin
 
 __all__ = ["near_skin", "sheet_pull"]
 

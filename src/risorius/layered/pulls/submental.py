@@ -7,10 +7,10 @@ from scipy.spatial import cKDTree
 
 from risorius.anatomy.jaw import JawPose
 from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.skin import Skin
 from risorius.anatomy.skull_fit import FittedSkull
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.layered.pulls.pull import Pull
-from risorius.layered.skin import Skin
 
 __all__ = ["REFERENCE_PITCH", "submental_pull"]
 

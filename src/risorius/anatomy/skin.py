@@ -11,11 +11,11 @@ from scipy.spatial import cKDTree
 
 from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.mouth import Mouth, measure_mouth
 from risorius.anatomy.outwards import unit
 from risorius.anatomy.skull import dental_arches
 from risorius.anatomy.skull_fit import MIRROR, FittedSkull, hidden_skin
 from risorius.anatomy.smooth_step import smooth_step
-from risorius.layered.mouth import Mouth, measure_mouth
 from risorius.mesh.connectivity import edges
 from risorius.mesh.core import TriMesh
 from risorius.mesh.laplacian import cotangent_laplacian, mass

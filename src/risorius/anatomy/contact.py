@@ -12,14 +12,14 @@ from scipy.spatial import cKDTree
 from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.eyes import Eyeball
 from risorius.anatomy.jaw import JawPose
+from risorius.anatomy.kernels.hull_push import hull_shortfall
+from risorius.anatomy.lip_contact import LipContact
 from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.outwards import unit
 from risorius.anatomy.radial_surface import RadialSurface
+from risorius.anatomy.skin import Skin
 from risorius.anatomy.skull_fit import MIRROR
 from risorius.head.head import Head
-from risorius.layered.kernels.hull_push import hull_shortfall
-from risorius.layered.lip_contact import LipContact
-from risorius.layered.skin import Skin
 from risorius.spatial.hull import convex_hull
 
 __all__ = ["Contact"]

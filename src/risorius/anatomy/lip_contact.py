@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from risorius._check import FloatArray, IntArray
+from risorius.anatomy.skin import Skin
 from risorius.anatomy.smooth_step import smooth_step
-from risorius.layered.skin import Skin
 from risorius.mesh.lips import LipSides
 
 __all__ = ["LipContact"]
