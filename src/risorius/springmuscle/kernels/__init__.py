@@ -1,0 +1,3 @@
+"""Compiled arithmetic of ellipsoids, contraction and binding."""
+
+__all__ = []
