@@ -1,0 +1,238 @@
+"""Move a spring network: to rest for a bake, or by a number of steps for the live view."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from risorius._check import FloatArray, as_number, one_of
+from risorius.errors import ParameterError, SolverError
+from risorius.solvers.kernels.simd import PACK
+from risorius.solvers.kernels.spring_packs import leapfrog_packs
+from risorius.solvers.kernels.springs import add_anchors, add_edges, leapfrog
+from risorius.solvers.spring_layout import PackTables, SpringTables
+from risorius.solvers.springs import SpringControl, SpringNetwork, SpringState
+
+__all__ = [
+    "LeapfrogParameters",
+    "Moved",
+    "advance",
+    "edge_forces",
+    "forces_at",
+    "scalar_tables",
+    "settle",
+]
+
+Path = Literal["packed", "scalar"]
+_PATHS = ("packed", "scalar")
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeapfrogParameters:
+    """How a network is moved.
+
+    Parameters
+    ----------
+    step_share : float
+        Length of a step, as a share of the longest stable one.
+    drag : float
+        Share of the velocity lost per unit of time, as the rate of an exponential.
+    kinetic : bool
+        Kinetic damping: all velocities are reset when the energy of motion has peaked.
+    tolerance : float
+        `settle` ends when no force exceeds this share of its particle's mass [mm, where masses
+        are sums of stiffness].
+    step_limit : int
+        `settle` ends after this many steps at the latest.
+
+    Raises
+    ------
+    ParameterError
+        If the step would not be stable or anything is out of range.
+    """
+
+    step_share: float = 0.5
+    drag: float = 0.1
+    kinetic: bool = True
+    tolerance: float = 2e-4
+    step_limit: int = 2000
+
+    def __post_init__(self) -> None:
+        as_number("drag", self.drag, low=0.0)
+        as_number("tolerance", self.tolerance, low=0.0)
+        share = as_number("step_share", self.step_share)
+        if not 0.0 < share <= 1.0:
+            raise ParameterError(
+                f"step_share: {share:g} must be above 0 and at most 1, the stability limit; the "
+                "motion explodes beyond it"
+            )
+        if self.step_limit < 1:
+            raise ParameterError(f"step_limit: {self.step_limit} must be 1 or more")
+
+
+@dataclass(frozen=True, eq=False)
+class Moved:
+    """Outcome of a run.
+
+    Parameters
+    ----------
+    state : SpringState
+    steps : int
+        Steps taken.
+    residual : float
+        Largest force over mass at the last step.
+    """
+
+    state: SpringState
+    steps: int
+    residual: float
+
+
+def settle(
+    network: SpringNetwork,
+    state: SpringState,
+    control: SpringControl,
+    *,
+    parameters: LeapfrogParameters | None = None,
+    path: Path = "packed",
+) -> Moved:
+    """Step until the network is at rest.
+
+    Parameters
+    ----------
+    network : SpringNetwork
+    state : SpringState
+        Where to start; the result depends on it by less than the tolerance.
+    control : SpringControl
+    parameters : LeapfrogParameters, optional
+    path : {"packed", "scalar"}
+        Vectors of float32, or the float64 reference.
+
+    Raises
+    ------
+    SolverError
+        If the motion is no longer finite.
+    """
+    p = parameters or LeapfrogParameters()
+    return _run(network, state, control, p, p.step_limit, path)
+
+
+def advance(
+    network: SpringNetwork,
+    state: SpringState,
+    control: SpringControl,
+    *,
+    steps: int,
+    parameters: LeapfrogParameters | None = None,
+    path: Path = "packed",
+) -> Moved:
+    """Take `steps` steps; fewer if the network comes to rest. Otherwise as `settle`."""
+    return _run(network, state, control, parameters or LeapfrogParameters(), steps, path)
+
+
+def edge_forces(network: SpringNetwork, positions: FloatArray) -> FloatArray:
+    """Return the forces (n, 3) of the edges alone at `positions` (n, 3) [mm]."""
+    forces = np.zeros_like(positions)
+    tables = scalar_tables(network, SpringControl(anchors=_somewhere(network)))
+    add_edges(positions, tables, forces)
+    return forces
+
+
+def forces_at(network: SpringNetwork, positions: FloatArray, control: SpringControl) -> FloatArray:
+    """Return all forces (n, 3) at `positions` (n, 3) [mm], by the reference."""
+    forces = np.zeros_like(positions)
+    tables = scalar_tables(network, control)
+    add_edges(positions, tables, forces)
+    add_anchors(positions, tables, forces)
+    return forces
+
+
+def _somewhere(network: SpringNetwork) -> FloatArray:
+    return np.zeros((len(network.anchored), 3))
+
+
+def _run(
+    network: SpringNetwork,
+    state: SpringState,
+    control: SpringControl,
+    parameters: LeapfrogParameters,
+    limit: int,
+    path: Path,
+) -> Moved:
+    one_of("path", path, _PATHS)
+    move = _packed if path == "packed" else _scalar
+    moved = move(network, state, control, parameters, limit)
+    if not (np.isfinite(moved.state.positions).all() and np.isfinite(moved.residual)):
+        raise SolverError(
+            f"springs: not finite after {moved.steps} steps (residual {moved.residual:g}); take "
+            f"a smaller step_share than {parameters.step_share:g}"
+        )
+    return moved
+
+
+def _scalar(
+    network: SpringNetwork,
+    state: SpringState,
+    control: SpringControl,
+    p: LeapfrogParameters,
+    limit: int,
+) -> Moved:
+    x, v = state.positions.copy(), state.velocities.copy()
+    steps, residual = leapfrog(
+        x, v, scalar_tables(network, control), np.zeros_like(x), p.step_share * network.stable_step,
+        p.drag, p.kinetic, p.tolerance, limit,
+    )  # fmt: skip
+    return Moved(SpringState(x, v), int(steps), float(residual))
+
+
+def scalar_tables(network: SpringNetwork, control: SpringControl) -> SpringTables:
+    """Return what the reference kernel reads."""
+    given = control.resolved(network)
+    return SpringTables(
+        network.edges, given["rest_lengths"], given["knee_lengths"], network.stiffness,
+        network.stiffening, network.anchored, given["anchors"], network.anchor_lengths,
+        given["anchor_stiffness"], given["hold_targets"], network.hold_stiffness, given["load"],
+        network.inv_mass,
+    )  # fmt: skip
+
+
+def _packed(
+    network: SpringNetwork,
+    state: SpringState,
+    control: SpringControl,
+    p: LeapfrogParameters,
+    limit: int,
+) -> Moved:
+    layout = network.layout
+    given = control.resolved(network)
+    # Counted from the middle, float32 is as exact as it can be.
+    centre = network.rest_positions.mean(axis=0) if network.particle_count else np.zeros(3)
+    x = layout.vectors(state.positions - centre)
+    v = layout.vectors(state.velocities)
+    rows = layout.rows(x)
+    tables = _pack_tables(network, given, centre)
+    peak = np.zeros(PACK, np.float32)
+    steps, residual = leapfrog_packs(
+        rows, x, v, tables, np.zeros_like(x), peak, p.step_share * network.stable_step,
+        p.drag, p.kinetic, p.tolerance, limit,
+    )  # fmt: skip
+    positions = layout.vectors_back(x) + centre
+    positions[network.fixed] = state.positions[network.fixed]
+    return Moved(SpringState(positions, layout.vectors_back(v)), int(steps), float(residual))
+
+
+def _pack_tables(
+    network: SpringNetwork, given: dict[str, FloatArray], centre: FloatArray
+) -> PackTables:
+    layout = network.layout
+    anchors = given["anchors"] - centre
+    return PackTables(
+        layout.edge_start, layout.neighbours,
+        layout.edge_fields(given["rest_lengths"], given["knee_lengths"], network.stiffness),
+        np.array([network.stiffening], np.float32), layout.anchor_start,
+        layout.anchor_fields(*anchors.T, network.anchor_lengths, given["anchor_stiffness"]),
+        layout.vectors(given["hold_targets"] - centre), layout.scalars(network.hold_stiffness),
+        layout.vectors(given["load"]), layout.scalars(network.inv_mass), layout.own_rows(),
+    )  # fmt: skip

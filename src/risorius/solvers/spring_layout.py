@@ -1,0 +1,189 @@
+"""How springs lie in the tables of the kernels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from risorius._check import FloatArray, IntArray
+from risorius.solvers.kernels.simd import PACK
+from risorius.solvers.kernels.tables import aligned_zeros
+
+__all__ = ["PackLayout", "PackTables", "SpringTables", "pack_layout"]
+
+Table = npt.NDArray[Any]
+# Neighbours stay this near to each other in memory, so that the fast cache holds them.
+_WINDOW = 4096
+
+
+class SpringTables(NamedTuple):
+    """What the scalar reference reads: the arrays of network and control as they are."""
+
+    edges: Table
+    rest_lengths: Table
+    knee_lengths: Table
+    stiffness: Table
+    stiffening: float
+    anchored: Table
+    anchors: Table
+    anchor_lengths: Table
+    anchor_stiffness: Table
+    hold_targets: Table
+    hold_stiffness: Table
+    load: Table
+    inv_mass: Table
+
+
+class PackTables(NamedTuple):
+    """What the packed kernel reads, flat and in float32.
+
+    Particles stand in blocks of `PACK`; `*_start` gives the first slot of each block, and the
+    end. A slot holds one spring of each particle of the block: first their `PACK` rest lengths,
+    then the next field. What fills up a slot has stiffness 0.
+    """
+
+    edge_start: Table
+    neighbours: Table
+    edge_rows: Table
+    stiffening: Table
+    anchor_start: Table
+    anchor_rows: Table
+    hold_targets: Table
+    hold_stiffness: Table
+    load: Table
+    inv_mass: Table
+    own: Table
+
+
+@dataclass(frozen=True, eq=False)
+class PackLayout:
+    """Where particles and springs lie in the packed tables.
+
+    Parameters
+    ----------
+    order : (n,) int32
+        Particles in the order of the blocks: neighbours near each other, and among those the ones
+        with the most springs first, so that the particles of a block have about as many.
+    block_count : int
+    edge_start, anchor_start : (b + 1,) int64
+        First slot of each block.
+    neighbours : (slots * PACK,) uint32
+        Row of the other end of each edge.
+    edge_place : (2 e,) int64
+        Entry of each edge, seen from its first ends and then from its second ends: slot * PACK +
+        lane.
+    anchor_place : (a,) int64
+        The same of each anchor spring.
+    """
+
+    order: IntArray
+    block_count: int
+    edge_start: npt.NDArray[np.int64]
+    anchor_start: npt.NDArray[np.int64]
+    neighbours: npt.NDArray[np.uint32]
+    edge_place: npt.NDArray[np.int64]
+    anchor_place: npt.NDArray[np.int64]
+
+    @property
+    def padded_count(self) -> int:
+        """Number of particles with those that fill up the last block."""
+        return self.block_count * PACK
+
+    def vectors(self, values: FloatArray) -> Table:
+        """Return vectors (n, 3) of the particles as the kernel keeps them (3 padded,)."""
+        result = aligned_zeros(3 * self.padded_count, np.float32)
+        padded = np.zeros((self.padded_count, 3), np.float32)
+        padded[: len(self.order)] = values[self.order]
+        result[:] = padded.reshape(-1, PACK, 3).swapaxes(1, 2).ravel()
+        return result
+
+    def vectors_back(self, table: Table) -> FloatArray:
+        """Return vectors (n, 3) of the particles from what the kernel keeps."""
+        rows = table.reshape(-1, 3, PACK).swapaxes(1, 2).reshape(-1, 3)
+        result = np.empty((len(self.order), 3))
+        result[self.order] = rows[: len(self.order)]
+        return result
+
+    def scalars(self, values: FloatArray) -> Table:
+        """Return numbers (n,) of the particles as the kernel keeps them (padded,)."""
+        result = aligned_zeros(self.padded_count, np.float32)
+        result[: len(self.order)] = values[self.order]
+        return result
+
+    def rows(self, vectors: Table) -> Table:
+        """Return the rows x, y, z, 0 (4 padded,) of vectors (3 padded,)."""
+        result = aligned_zeros(4 * self.padded_count, np.float32)
+        result.reshape(-1, 4)[:, :3] = vectors.reshape(-1, 3, PACK).swapaxes(1, 2).reshape(-1, 3)
+        return result
+
+    def edge_fields(self, *fields: FloatArray) -> Table:
+        """Return numbers (e,) of the edges side by side as the kernel keeps them."""
+        return _fields([np.tile(field, 2) for field in fields], self.edge_place, self.edge_start)
+
+    def anchor_fields(self, *fields: FloatArray) -> Table:
+        """Return numbers (a,) of the anchor springs side by side as the kernel keeps them."""
+        return _fields(list(fields), self.anchor_place, self.anchor_start)
+
+    def own_rows(self) -> Table:
+        """Return the row (padded,) of each particle, in entries."""
+        return (4 * np.arange(self.padded_count)).astype(np.uint32)
+
+
+def pack_layout(edges: IntArray, anchored: IntArray, particle_count: int) -> PackLayout:
+    """Lay out `edges` (e, 2) and the springs of the particles `anchored` (a,)."""
+    ends = edges.T.ravel()
+    degree = np.bincount(ends, minlength=particle_count)
+    hung = np.bincount(anchored, minlength=particle_count)
+    near = _near_order(edges, particle_count)
+    window = np.arange(particle_count) // _WINDOW
+    order = near[np.lexsort((-degree[near], -hung[near], window))]
+    rank = np.empty(particle_count, np.int64)
+    rank[order] = np.arange(particle_count)
+    blocks = max(1, -(-particle_count // PACK))
+    edge_place, edge_start = _slots(rank[ends], blocks)
+    anchor_place, anchor_start = _slots(rank[anchored], blocks)
+    # What fills up a slot is an edge from a particle to itself.
+    own = np.arange(blocks * PACK).reshape(blocks, PACK)
+    neighbours = np.repeat(own, np.diff(edge_start), axis=0).ravel()
+    neighbours[edge_place] = rank[edges[:, ::-1].T.ravel()]
+    return PackLayout(
+        order, blocks, edge_start, anchor_start, (4 * neighbours).astype(np.uint32), edge_place,
+        anchor_place,
+    )  # fmt: skip
+
+
+def _near_order(edges: IntArray, particle_count: int) -> IntArray:
+    """Return the particles (n,) so that neighbours are near each other."""
+    both = np.concatenate([edges, edges[:, ::-1]])
+    shape = (particle_count, particle_count)
+    graph = csr_matrix((np.ones(len(both)), (both[:, 0], both[:, 1])), shape=shape)
+    return np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True), np.int32)
+
+
+def _slots(
+    ranks: npt.NDArray[np.int64], blocks: int
+) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """Return the entry (s,) of each spring of the particles `ranks` (s,), and the slots' starts."""
+    counts = np.bincount(ranks, minlength=blocks * PACK)
+    start = np.concatenate([[0], np.cumsum(counts.reshape(blocks, PACK).max(axis=1))])
+    sequence = np.argsort(ranks, kind="stable")
+    first = np.concatenate([[0], np.cumsum(counts)])[ranks[sequence]]
+    number = np.empty(len(ranks), np.int64)
+    number[sequence] = np.arange(len(ranks)) - first
+    return (start[ranks // PACK] + number) * PACK + ranks % PACK, start
+
+
+def _fields(
+    fields: list[FloatArray], place: npt.NDArray[np.int64], start: npt.NDArray[np.int64]
+) -> Table:
+    count = len(fields)
+    result = aligned_zeros(int(start[-1]) * count * PACK, np.float32)
+    slot, lane = np.divmod(place, PACK)
+    for number, field in enumerate(fields):
+        result[(slot * count + number) * PACK + lane] = field
+    return result
