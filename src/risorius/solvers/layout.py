@@ -114,7 +114,7 @@ def layout_of(model: Model, parameters: Parameters, form: Form, dtype: npt.DType
     gain, compliance = builder.gains(sequence(order.distances))
     tables = Tables(
         hold_particles=frame.rank[holds].astype(np.uint32),
-        hold_stiffness=builder.strength(c.holds.stiffness[order.holds], model.weights[holds]),
+        hold_stiffness=builder.holding(c.holds.stiffness[order.holds], model.weights[holds]),
         pairs=builder.indices(order.distances, c.distances.particles),
         distance_rest=builder.filled(
             order.distances, c.distances.rest[sequence(order.distances)] / frame.scale
@@ -170,6 +170,10 @@ class _Builder:
             return 1.0 - (1.0 - stiffness) ** (1.0 / (p.iterations * p.substeps))
         longer = p.dt / p.substeps / _PUBLISHED_DT
         return weight * (1.0 - stiffness) / stiffness / longer**2
+
+    def holding(self, stiffness: FloatArray, weight: FloatArray) -> FloatArray:
+        """Return the entries of holds of stiffness k (k,); pinned particles are not drawn."""
+        return np.where(weight > 0.0, self.strength(stiffness, weight), 0.0)
 
     def gains(self, rows: IntArray) -> tuple[FloatArray, FloatArray]:
         """Return k / W and 0, or 1 / (W + a) and a, of the distances in `rows` (k,)."""

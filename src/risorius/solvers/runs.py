@@ -94,7 +94,7 @@ class SingleRun:
         targets = _controlled(
             "targets", control.targets, rest[model.constraints.holds.particles], None
         )
-        self._targets = self._flat(frame.inside(targets[order.holds]))
+        self._targets = self._held(frame.inside(targets[order.holds]))
         self._pinned = frame.inside(_controlled("pinned", control.pinned, rest[model.pinned], None))
         volumes = _controlled("rest_volumes", control.rest_volumes, _rest_volumes(model), None)
         self._rest = (volumes / frame.scale**3).astype(self._dtype)
@@ -122,6 +122,12 @@ class SingleRun:
 
     def _flat(self, values: FloatArray) -> Table:
         return values.astype(self._dtype).ravel()
+
+    def _held(self, targets: FloatArray) -> Table:
+        """Return targets (k, 3) as rows of four, with the inverse mass of the held particle."""
+        model = self._model
+        particles = model.constraints.holds.particles[model.order.holds]
+        return self._flat(np.column_stack([targets, model.weights[particles]]))
 
     def _multipliers(self) -> Multipliers:
         t, size = self._layout.tables, int(self._compliant)

@@ -71,8 +71,8 @@ def _close_caps(g, v, volume):
 
 
 @njit(**FLAGS)
-def _by_faces(x, g, v, volume):
-    """Write the gradient of six times a volume to `g`; return that volume."""
+def _by_faces(x, w, g, v, volume):
+    """Write the gradient of six times a volume to `g`; return that volume and W."""
     zero = splat(x, 0.0)
     for entry in range(v.particle_start[volume], v.particle_start[volume + 1]):
         put(g, ROW * v.particles[entry], zero, zero, zero)
@@ -92,13 +92,17 @@ def _by_faces(x, g, v, volume):
         nx, ny, nz = _cross(ax, ay, az, bx, by, bz)
         _add(g, m, nx, ny, nz)
     _close_caps(g, v, volume)
-    return total
+    weight = zero
+    for particle in v.particles[v.particle_start[volume] : v.particle_start[volume + 1]]:
+        gx, gy, gz = place(g, ROW * particle)
+        weight = weight + w[particle] * (gx * gx + gy * gy + gz * gz)
+    return total, weight
 
 
 @njit(**FLAGS)
-def _by_rings(x, g, v, r, volume):
+def _by_rings(x, w, g, v, r, volume):
     """Do what `_by_faces` does, without writing to one particle more than once."""
-    moment = splat(x, 0.0)
+    moment = weight = splat(x, 0.0)
     for cap in range(v.cap_start[volume], v.cap_start[volume + 1]):
         gx = gy = gz = splat(x, 0.0)
         first, last = v.rim_start[cap], v.rim_start[cap + 1]
@@ -135,10 +139,11 @@ def _by_rings(x, g, v, r, volume):
             gy = gy + by
             gz = gz + bz
         put(g, row, gx, gy, gz)
+        weight = weight + w[r.rows[group]] * (gx * gx + gy * gy + gz * gz)
     for cap in range(v.cap_start[volume], v.cap_start[volume + 1]):
         zero = splat(x, 0.0)
         put(g, ROW * v.cap_rows[cap], zero, zero, zero)
-    return moment * splat(x, 1.0 / 3.0)
+    return moment * splat(x, 1.0 / 3.0), weight
 
 
 @njit(**FLAGS)
@@ -146,12 +151,11 @@ def project_volumes(x, w, g, v, r, rest, pushed, compliant):
     """Bring each volume to `rest`; `g` is scratch of the shape of `x`."""
     for volume in range(v.stiffness.size):
         _open_caps(x, v, volume)
-        total = _by_rings(x, g, v, r, volume) if r.rows.size else _by_faces(x, g, v, volume)
-        weight = splat(x, 0.0)
+        if r.rows.size:
+            total, weight = _by_rings(x, w, g, v, r, volume)
+        else:
+            total, weight = _by_faces(x, w, g, v, volume)
         touched = v.particles[v.particle_start[volume] : v.particle_start[volume + 1]]
-        for particle in touched:
-            gx, gy, gz = place(g, ROW * particle)
-            weight = weight + w[particle] * (gx * gx + gy * gy + gz * gz)
         k = v.stiffness[volume]
         gap = total - load(rest, LANES * volume) * 6.0
         if compliant:

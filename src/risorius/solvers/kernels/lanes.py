@@ -20,16 +20,33 @@ from risorius.solvers.kernels.formulas import (
     plain_step,
 )
 from risorius.solvers.kernels.lane_volumes import ROW, place, project_volumes, put
-from risorius.solvers.kernels.memory import load, store
+from risorius.solvers.kernels.memory import load, prefetch, store
 from risorius.solvers.kernels.simd import LANES, larger, splat
 
 __all__ = ["iterate", "largest_moves"]
+
+
+# Constraints whose particles are asked for in advance: about as long as memory takes.
+_AHEAD = 32
+
+
+@njit(**FLAGS)
+def _expect(x, particles, count, corners, c, backward):
+    """Ask for the particles of the constraint that comes some steps later."""
+    ahead = c - _AHEAD if backward else c + _AHEAD
+    if 0 <= ahead < count:
+        for corner in range(corners):
+            i = ROW * particles[corners * ahead + corner]
+            prefetch(x, i)
+            prefetch(x, i + LANES)
+            prefetch(x, i + 2 * LANES)
 
 
 @njit(**FLAGS)
 def _holds(x, w, t, targets, pushed, compliant):
     for c in range(t.hold_particles.size):
         particle = t.hold_particles[c]
+        _expect(x, t.hold_particles, t.hold_particles.size, 1, c, False)
         wa = w[particle]
         k = t.hold_stiffness[c]
         if wa <= 0:
@@ -53,6 +70,7 @@ def _distances(x, w, t, pushed, backward, compliant):
     count = t.distance_rest.size
     for n in range(count):
         c = count - 1 - n if backward else n
+        _expect(x, t.pairs, count, 2, c, backward)
         i = t.pairs[2 * c]
         j = t.pairs[2 * c + 1]
         wa, wb = w[i], w[j]
@@ -79,6 +97,7 @@ def _areas(x, w, t, pushed, backward, compliant):
     count = t.area_rest.size
     for n in range(count):
         c = count - 1 - n if backward else n
+        _expect(x, t.corners, count, 3, c, backward)
         i = t.corners[3 * c]
         j = t.corners[3 * c + 1]
         m = t.corners[3 * c + 2]
@@ -108,6 +127,7 @@ def _bends(x, w, t, pushed, backward, compliant):
     count = t.bend_sine.size
     for n in range(count):
         c = count - 1 - n if backward else n
+        _expect(x, t.flaps, count, 4, c, backward)
         i = t.flaps[4 * c]
         j = t.flaps[4 * c + 1]
         m = t.flaps[4 * c + 2]

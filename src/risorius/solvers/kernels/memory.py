@@ -6,6 +6,7 @@ import platform
 
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic
 
 from risorius.solvers.kernels.simd import (
@@ -18,7 +19,7 @@ from risorius.solvers.kernels.simd import (
     shuffled,
 )
 
-__all__ = ["gather", "lane_sum", "load", "load_pack", "scatter", "store"]
+__all__ = ["gather", "lane_sum", "load", "load_pack", "load_row", "prefetch", "scatter", "store"]
 
 _FIELDS = 4
 
@@ -67,6 +68,12 @@ def load_pack(typing, array, start):
 
 
 @intrinsic
+def load_row(typing, array, start):
+    """Return the four entries of a flat array from `start` on."""
+    return _loading(array, start, _FIELDS, 1)
+
+
+@intrinsic
 def store(typing, array, start, vector):
     """Write a vector to the entries of a flat array from `start` on."""
 
@@ -78,6 +85,23 @@ def store(typing, array, start, vector):
         return context.get_dummy_value()
 
     return types.void(array, start, vector), emit
+
+
+@intrinsic
+def prefetch(typing, array, start):
+    """Ask for the cache line at entry `start` of a flat array; results do not depend on it."""
+
+    def emit(context, builder, sig, args):
+        byte = ir.PointerType(ir.IntType(8))
+        data = context.make_array(array)(context, builder, args[0]).data
+        place = builder.bitcast(builder.gep(data, [args[1]]), byte)
+        word = ir.IntType(32)
+        kind = ir.FunctionType(ir.VoidType(), [byte, word, word, word])
+        function = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0i8")
+        builder.call(function, [place, *(ir.Constant(word, n) for n in (0, 3, 1))])
+        return context.get_dummy_value()
+
+    return types.void(array, start), emit
 
 
 @intrinsic

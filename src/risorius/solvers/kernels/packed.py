@@ -14,12 +14,34 @@ from risorius.solvers.kernels.formulas import (
     move_bend,
     plain_step,
 )
-from risorius.solvers.kernels.memory import gather, load_pack, scatter, store
+from risorius.solvers.kernels.memory import gather, load_pack, load_row, prefetch, scatter, store
 from risorius.solvers.kernels.rings import project_ring_volumes
 from risorius.solvers.kernels.simd import PACK
 from risorius.solvers.kernels.single import project_contacts, project_holds, project_volumes
 
 __all__ = ["iterate"]
+
+
+# Groups whose entries are asked for in advance; large models stream through the cache.
+_AHEAD = 24
+
+
+@njit(**FLAGS)
+def _expect(table, row, corners, backward):
+    """Ask for the entries of a table that are needed some groups later."""
+    ahead = row - _AHEAD * PACK if backward else row + _AHEAD * PACK
+    if 0 <= ahead < table.size // corners:
+        for corner in range(corners):
+            prefetch(table, corners * ahead + corner * PACK)
+
+
+@njit(**FLAGS)
+def _holds(p, t, targets):
+    """Draw particles to their targets, x, y, z at once; the targets' w is the particle's."""
+    for c in range(t.hold_particles.size):
+        i = 4 * t.hold_particles[c]
+        here = load_row(p, i)
+        store(p, i, here - t.hold_stiffness[c] * (here - load_row(targets, 4 * c)))
 
 
 @njit(**FLAGS)
@@ -29,6 +51,9 @@ def _distances(p, t, pushed, backward, compliant):
         q = count - 1 - n if backward else n
         row = q * PACK
         i = 2 * row
+        _expect(t.pairs, row, 2, backward)
+        _expect(t.distance_rest, row, 1, backward)
+        _expect(t.distance_gain, row, 1, backward)
         j = i + PACK
         ax, ay, az, wa = gather(p, t.pairs, i)
         bx, by, bz, wb = gather(p, t.pairs, j)
@@ -86,6 +111,10 @@ def _bends(p, t, pushed, backward, compliant):
         q = count - 1 - n if backward else n
         row = q * PACK
         i = 4 * row
+        _expect(t.flaps, row, 4, backward)
+        _expect(t.bend_sine, row, 1, backward)
+        _expect(t.bend_cosine, row, 1, backward)
+        _expect(t.bend_stiffness, row, 1, backward)
         j = i + PACK
         m = j + PACK
         o = m + PACK
@@ -120,7 +149,10 @@ def iterate(p, g, t, v, r, c, targets, rest, m, sweeps, first, alternating, comp
     """Project every constraint `sweeps` times, in order; odd sweeps backwards if alternating."""
     for sweep in range(first, first + sweeps):
         backward = alternating and sweep % 2 == 1
-        project_holds(p, t, targets, m.holds, compliant)
+        if compliant:
+            project_holds(p, t, targets, m.holds, True)
+        else:
+            _holds(p, t, targets)
         _distances(p, t, m.distances, backward, compliant)
         _areas(p, t, m.areas, backward, compliant)
         _bends(p, t, m.bends, backward, compliant)

@@ -10,11 +10,14 @@ six times the volume is a third of the sum of p . g over all of them.
 from numba import njit
 
 from risorius.solvers.kernels.formulas import FLAGS
-from risorius.solvers.kernels.memory import gather, lane_sum, load_pack, scatter, store
+from risorius.solvers.kernels.memory import gather, lane_sum, load_pack, prefetch, scatter, store
 from risorius.solvers.kernels.simd import PACK
 from risorius.solvers.kernels.single import add_cross, open_caps
 
 __all__ = ["project_ring_volumes"]
+
+# Entries of the rings that are asked for in advance.
+_AHEAD = 24 * PACK
 
 
 @njit(**FLAGS)
@@ -57,6 +60,7 @@ def project_ring_volumes(p, g, v, r, rest, pushed, compliant):
             gy = gx
             gz = gx
             for turn in range(place + PACK, r.ring_start[group + 1], PACK):
+                prefetch(r.rings, min(turn + _AHEAD, r.rings.size - 1))
                 bx, by, bz, w = gather(p, r.rings, turn)
                 gx = gx + (ay * bz - az * by)
                 gy = gy + (az * bx - ax * bz)

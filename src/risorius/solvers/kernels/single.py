@@ -10,14 +10,17 @@ __all__ = ["add_cross", "open_caps", "project_contacts", "project_holds", "proje
 
 @njit(**FLAGS)
 def project_holds(p, t, targets, pushed, compliant):
-    """Draw particles to their targets; a hold is three constraints p - q = 0, one per axis."""
+    """Draw particles to their targets, rows of four whose w is the particle's.
+
+    A hold is three constraints p - q = 0, one per axis.
+    """
     for c in range(t.hold_particles.size):
         i = 4 * t.hold_particles[c]
         w = p[i + 3]
         k = t.hold_stiffness[c]
         if w > 0:
             for axis in range(3):
-                gap = p[i + axis] - targets[3 * c + axis]
+                gap = p[i + axis] - targets[4 * c + axis]
                 if compliant:
                     step = (gap - k * pushed[3 * c + axis]) / (w + k)
                     pushed[3 * c + axis] += step
