@@ -14,8 +14,17 @@ from risorius.controls.shape_sets import SHAPE_SETS
 from risorius.errors import FormatError, ParameterError
 from risorius.head.frame import MILLIMETRES
 from risorius.head.part import PART_KINDS
-from risorius.project import PROFILES, Project, read_project, upgrade_project, write_project
+from risorius.layered import default_muscle_map
+from risorius.project import (
+    PROFILES,
+    Project,
+    landmarks_of,
+    read_project,
+    upgrade_project,
+    write_project,
+)
 from risorius.project.files import SCHEMA, VERSION
+from risorius.project.layered import muscle_map_of
 
 _NAMES = st.text(st.characters(codec="utf-8", exclude_categories=["Cs", "Cc"]), min_size=1)
 _FILES = st.from_regex(r"[a-z][a-z0-9 ._-]{0,8}[a-z]", fullmatch=True)
@@ -101,6 +110,8 @@ def _written(folder: Path, **entries: Any) -> Path:
         ({"parameters": {"steps": True}}, "steps: expected a number"),
         ({"shapes": "arkit"}, "shapes: expected a list"),
         ({"shapes": ["visemes"]}, "'visemes' is not one of"),
+        ({"head": {"schema": "mesh"}}, "head: expected a text"),
+        ({"poses": {"smile": {"jaw_pitch": "wide"}}}, "jaw_pitch: expected a number"),
     ],
 )
 def test_a_wrong_entry_is_refused_with_its_place(
@@ -128,6 +139,25 @@ def test_a_remark_is_allowed(tmp_path: Path) -> None:
 def test_a_word_that_is_no_choice_is_refused_at_once() -> None:
     with pytest.raises(ParameterError, match="'slow' is not one of"):
         Project(profile="slow")
+
+
+def test_recipes_and_poses_in_the_project_itself_come_back_bit_for_bit(tmp_path: Path) -> None:
+    recipe = default_muscle_map().to_json()
+    pose = {"jaw_pitch": 1.0 / 3.0, "zygomaticus_major_l": 0.1}
+    marks = {"schema": "risorius/landmarks", "version": 1, "landmarks": {"2.1": {"vertex": 7}}}
+    project = Project(
+        inline={"muscle_map": recipe, "landmarks": marks}, poses={"half a smile": pose}
+    )
+    write_project(project, tmp_path / "p.json")
+    again = read_project(tmp_path / "p.json")
+    assert again == project
+    assert landmarks_of(again, {})["2.1"].vertex == 7
+    assert muscle_map_of(again).to_json() == recipe
+
+
+def test_a_broken_recipe_in_the_project_is_named() -> None:
+    with pytest.raises(FormatError, match="project: muscle_map"):
+        muscle_map_of(Project(inline={"muscle_map": {"schema": "risorius/style"}}))
 
 
 def _to_two(document: dict[str, Any]) -> dict[str, Any]:

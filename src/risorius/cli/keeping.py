@@ -52,9 +52,11 @@ def describe(project: Project, talk: Talk) -> None:
     shown: dict[str, Any] = {}
     absent: list[str] = []
     for entry in fields(Project):
-        value = getattr(project, entry.name)
+        value: Any = getattr(project, entry.name)
         if entry.name == "head":
             value = project.name
+        elif entry.name in ("inline", "poses"):
+            value = tuple(value)
         shown[entry.name] = value
         if isinstance(getattr(project, entry.name), Path) and not Path(value).is_file():
             absent.append(entry.name)

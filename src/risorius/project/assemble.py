@@ -14,7 +14,9 @@ from risorius.anatomy.mechanics import Mechanics
 from risorius.controls.presets import PresetBook, default_presets, parse_presets
 from risorius.errors import LandmarkError, ParameterError
 from risorius.head.head import Head
-from risorius.io.bounded import read_json
+from risorius.io.bounded import check_schema, read_json
+from risorius.io.json_fields import Fields
+from risorius.io.landmarks import landmarks_from_json
 from risorius.landmarks.landmark_set import LandmarkSpec
 from risorius.mesh.polygon_mesh import PolygonMesh
 from risorius.project.layered import layered_face
@@ -57,8 +59,8 @@ def read_mesh(project: Project) -> tuple[PolygonMesh, Specs]:
 def landmarks_of(project: Project, carried: Specs) -> Specs:
     """Return the landmarks of a project's head.
 
-    The project's landmark file comes first, then those that the head's own file `carried`, then
-    the file ``<head>.landmarks.json`` beside it.
+    Those in the project itself come first, then the project's landmark file, then those that the
+    head's own file `carried`, then the file ``<head>.landmarks.json`` beside it.
 
     Raises
     ------
@@ -67,6 +69,10 @@ def landmarks_of(project: Project, carried: Specs) -> Specs:
     LandmarkError
         If there are no landmarks at all.
     """
+    if "landmarks" in project.inline:
+        document = Fields(dict(project.inline["landmarks"]), "project: landmarks")
+        check_schema(document.value, document.where, schema="risorius/landmarks", version=1)
+        return landmarks_from_json(document.fields("landmarks").value, document.where)
     if project.landmarks is not None:
         return _formats.read_landmarks(project.landmarks)
     if carried or project.head is None:
@@ -104,11 +110,15 @@ def read_vector_set(path: str | Path) -> VectorSet:
 
 def presets_of(project: Project) -> PresetBook:
     """Return the presets of a project, or those that ship with risorius."""
+    if "presets" in project.inline:
+        return parse_presets(project.inline["presets"], source="project: presets")
     return default_presets() if project.presets is None else read_presets(project.presets)
 
 
 def vectors_of(project: Project) -> VectorSet:
     """Return the vector set of a project, or the one that ships with risorius."""
+    if "vector_set" in project.inline:
+        return parse_vector_set(project.inline["vector_set"], source="project: vector_set")
     if project.vector_set is None:
         return default_vector_set()
     return read_vector_set(project.vector_set)

@@ -14,24 +14,27 @@ from risorius.errors import FormatError, ParameterError
 from risorius.io.atomic import write_bytes
 from risorius.io.bounded import MEGABYTE, read_json
 from risorius.io.json_fields import Fields
-from risorius.project.project import BUILTIN, Project
+from risorius.project.project import BUILTIN, INLINE, Project
 
 __all__ = ["SCHEMA", "UPGRADES", "VERSION", "read_project", "upgrade_project", "write_project"]
 
 SCHEMA = "risorius/project"
-VERSION = 1
-_LIMIT = 4 * MEGABYTE
+VERSION = 2
+_LIMIT = 64 * MEGABYTE
 _PATHS = (
     "head", "landmarks", "vector_set", "muscle_map", "presets", "skull", "mandible",
     "skull_landmarks",
 )  # fmt: skip
 _TEXTS = ("unit", "axes", "method", "profile")
-_OTHERS = ("parts", "flip_landmarks", "parameters", "shapes")
+_OTHERS = ("parts", "flip_landmarks", "parameters", "shapes", "poses")
 
 Document = dict[str, Any]
 Upgrade = Callable[[Document], Document]
-UPGRADES: dict[int, Upgrade] = {}
-"""For each old version the step that turns its content into the next version's."""
+UPGRADES: dict[int, Upgrade] = {1: dict}
+"""For each old version the step that turns its content into the next version's.
+
+Version 2 lets recipes stand in the project itself and keeps poses; version 1 needs no change.
+"""
 
 
 def read_project(path: str | Path) -> Project:
@@ -58,7 +61,7 @@ def write_project(project: Project, path: str | Path) -> None:
     document: Document = {"schema": SCHEMA, "version": VERSION}
     folder = Path(os.path.realpath(path)).parent
     for name in (*_PATHS[:2], *_TEXTS[:2], *_OTHERS[:2], *_TEXTS[2:], *_OTHERS[2:], *_PATHS[2:]):
-        value = getattr(project, name)
+        value = project.inline.get(name) or getattr(project, name)
         if name == "head" and value is None:
             document[name] = BUILTIN
         elif isinstance(value, Path):
@@ -141,7 +144,7 @@ def _parse(document: Document, path: Path) -> Project:
     flip = document.get("flip_landmarks", False)
     if not isinstance(flip, bool):
         raise FormatError(f"{fields.place('flip_landmarks')}: expected true or false")
-    parts = fields.fields("parts")
+    parts, poses = fields.fields("parts"), fields.fields("poses")
     parameters = fields.fields("parameters")
     try:
         return replace(
@@ -161,6 +164,8 @@ def _parse(document: Document, path: Path) -> Project:
             parameters={name: _parameter(parameters, name) for name in parameters},
             flip_landmarks=flip,
             shapes=tuple(fields.texts("shapes")) if "shapes" in fields else SHAPE_SETS,
+            inline={name: document[name] for name in INLINE if _is_inline(document, name)},
+            poses={name: _pose(poses.fields(name)) for name in poses},
         )
     except ParameterError as error:
         raise FormatError(f"{path}: {error}") from None
@@ -171,7 +176,17 @@ def _parameter(fields: Fields, name: str) -> float | str:
     return fields.text(name) if isinstance(value, str) else fields.number(name)
 
 
+def _pose(fields: Fields) -> dict[str, float]:
+    return {name: fields.number(name) for name in fields}
+
+
+def _is_inline(document: Document, key: str) -> bool:
+    return isinstance(document.get(key), dict)
+
+
 def _path(fields: Fields, key: str, path: Path) -> Path | None:
+    if key in INLINE and _is_inline(fields.value, key):
+        return None
     return _absolute(fields.text(key), path) if key in fields else None
 
 

@@ -8,7 +8,12 @@ from risorius.errors import ParameterError
 from risorius.head.head import Head
 from risorius.layered.face import LayeredFace
 from risorius.layered.faithful import FaithfulFace
-from risorius.layered.muscle_map import MuscleMap, default_muscle_map, read_muscle_map
+from risorius.layered.muscle_map import (
+    MuscleMap,
+    default_muscle_map,
+    parse_muscle_map,
+    read_muscle_map,
+)
 from risorius.project.project import Project
 from risorius.rig.face import Face
 
@@ -17,6 +22,8 @@ __all__ = ["layered_face", "muscle_map_of", "skull_of"]
 
 def muscle_map_of(project: Project) -> MuscleMap:
     """Return the muscle map of a project, or the one that ships with risorius."""
+    if "muscle_map" in project.inline:
+        return parse_muscle_map(project.inline["muscle_map"], source="project: muscle_map")
     return (
         default_muscle_map() if project.muscle_map is None else read_muscle_map(project.muscle_map)
     )

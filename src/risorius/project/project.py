@@ -5,19 +5,23 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from risorius._check import one_of
 from risorius.controls.shape_sets import ALL_SHAPE_SETS, SHAPE_SETS
 from risorius.head.head import HeadOptions
 from risorius.head.part import PART_KINDS
 
-__all__ = ["BUILTIN", "METHODS", "PROFILES", "Project"]
+__all__ = ["BUILTIN", "INLINE", "METHODS", "PROFILES", "Project"]
 
 BUILTIN = "builtin"
 """What stands for a path where the head that ships with risorius is meant."""
 
 METHODS = ("layered", "vector")
 """Methods that pose a face."""
+
+INLINE = ("landmarks", "vector_set", "muscle_map", "presets")
+"""Recipes that may stand in the project file itself instead of in a file of their own."""
 
 PROFILES = ("improved", "faithful")
 """How closely a method follows its publication."""
@@ -52,6 +56,11 @@ class Project:
         A skull of one's own; the mandible where it has a file of its own.
     shapes : tuple of str
         Sets of shapes to bake.
+    inline : mapping of str to dict
+        Contents of recipes that stand in the project file itself, by `INLINE`; they go before
+        the path of the same name.
+    poses : mapping of str to mapping of str to float
+        Poses that a person keeps, by name.
 
     Raises
     ------
@@ -75,6 +84,8 @@ class Project:
     mandible: Path | None = None
     skull_landmarks: Path | None = None
     shapes: tuple[str, ...] = SHAPE_SETS
+    inline: Mapping[str, Mapping[str, Any]] = field(default_factory=dict[str, Mapping[str, Any]])
+    poses: Mapping[str, Mapping[str, float]] = field(default_factory=dict[str, Mapping[str, float]])
 
     def __post_init__(self) -> None:
         one_of("method", self.method, METHODS)
@@ -83,6 +94,8 @@ class Project:
             one_of("shapes", name, ALL_SHAPE_SETS)
         for kind in self.parts:
             one_of("part", kind, PART_KINDS)
+        for name in self.inline:
+            one_of("inline", name, INLINE)
 
     @property
     def options(self) -> HeadOptions:
