@@ -17,14 +17,15 @@ from risorius.errors import ParameterError
 from risorius.mesh.core import TriMesh
 from risorius.solvers.constraints import Constraints, Holds
 from risorius.solvers.layout import layout_of
-from risorius.solvers.model import Control, Model
+from risorius.solvers.model import Control, Model, State
 from risorius.solvers.parameters import Parameters
+from risorius.solvers.pbd import Solver
 from risorius.solvers.peer import peer_iteration
 from risorius.solvers.runs import LaneRun, Run, SingleRun
 from risorius.solvers.surface import SurfaceStiffness, surface_constraints
 from risorius.solvers.trial_head import trial_head
 
-__all__ = ["SIZES", "head_model", "run"]
+__all__ = ["SIZES", "head_model", "run", "settle_all"]
 
 # Vertex counts of thesis table 5.1, and two that are larger.
 SIZES = (1466, 2502, 4604, 4904, 20000, 80000)
@@ -61,12 +62,38 @@ def run(sizes: Sequence[int] = SIZES, *, rounds: int = 9, with_peer: bool = True
     Per size: vertex and constraint counts; seconds to order the constraints; for each way
     ("scalar", "packed", "lanes", and "pypbd" where it is installed) milliseconds per iteration
     and pose, nanoseconds per constraint, and how many times faster than "scalar" it is; memory of
-    the tables [MB]; the largest difference from the scalar result, relative to the largest
-    motion. "pypbd" does distances, bends and triangle strains only.
+    tables and positions of our own ways, for "lanes" of all 16 poses [MB]; the largest difference
+    from the scalar result, relative to the largest motion. "pypbd" does distances, bends and
+    triangle strains only.
     """
     if rounds < 1:
         raise ParameterError(f"rounds: {rounds} must be 1 or more")
     return {str(size): _one_size(size, rounds, with_peer=with_peer) for size in sizes}
+
+
+def settle_all(size: int, *, pose_count: int = 84) -> dict[str, Any]:
+    """Return what it takes to bring many poses of one head to rest at once, on one thread.
+
+    Vertex and pose count; processor seconds, the least of two runs; sweeps of the slowest pose;
+    whether all have settled.
+    """
+    model, targets = head_model(trial_head(size))
+    held = model.rest_positions[model.constraints.holds.particles]
+    shares = np.linspace(-1.0, 1.0, pose_count)[:, None, None]
+    control = Control(targets=held + shares * (targets - held))
+    state, solver = State.at_rest(model, pose_count=pose_count), Solver()
+    spent: list[float] = []
+    for _ in range(2):
+        began = time.process_time()
+        found = solver.settle(model, state, control)
+        spent.append(time.process_time() - began)
+    return {
+        "vertex_count": model.particle_count,
+        "pose_count": pose_count,
+        "seconds": min(spent),
+        "sweeps": int(found.iterations.max()),
+        "has_settled": found.has_settled,
+    }
 
 
 def _one_size(size: int, rounds: int, *, with_peer: bool) -> dict[str, Any]:
@@ -94,7 +121,7 @@ def _one_size(size: int, rounds: int, *, with_peer: bool) -> dict[str, Any]:
     if peer is not None:
         ways["pypbd"] = (peer, _FEWEST, 1)
     times = _interleaved(ways, rounds)
-    tables = sum(np.asarray(t).nbytes for t in (*packed32.tables, *packed32.volumes))
+    runs = {"scalar": scalar, "packed": packed, "lanes": lanes}
     filled = sum(len(g) for g in (order.distances, order.areas, order.bends))
     used = count - len(order.holds) - len(model.constraints.volumes)
     return {
@@ -102,7 +129,7 @@ def _one_size(size: int, rounds: int, *, with_peer: bool) -> dict[str, Any]:
         "constraint_count": count,
         "seconds_to_order": ordered,
         "group_fill": used / (filled * order.distances.shape[1]),
-        "table_megabytes": tables / 1e6,
+        "megabytes": {name: run.byte_count / 1e6 for name, run in runs.items()},
         "difference_from_scalar": difference,
         "ways": {
             name: {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -132,10 +132,15 @@ def advance(
     return _run(network, state, control, parameters or LeapfrogParameters(), steps, path)
 
 
-def edge_forces(network: SpringNetwork, positions: FloatArray) -> FloatArray:
-    """Return the forces (n, 3) of the edges alone at `positions` (n, 3) [mm]."""
+def edge_forces(
+    network: SpringNetwork, positions: FloatArray, control: SpringControl | None = None
+) -> FloatArray:
+    """Return the forces (n, 3) of the edges alone at `positions` (n, 3) [mm], by the reference."""
     forces = np.zeros_like(positions)
-    tables = scalar_tables(network, SpringControl(anchors=_somewhere(network)))
+    asked = control or SpringControl()
+    if asked.anchors is None:
+        asked = replace(asked, anchors=np.zeros((len(network.anchored), 3)))
+    tables = scalar_tables(network, asked)
     add_edges(positions, tables, forces)
     return forces
 
@@ -147,10 +152,6 @@ def forces_at(network: SpringNetwork, positions: FloatArray, control: SpringCont
     add_edges(positions, tables, forces)
     add_anchors(positions, tables, forces)
     return forces
-
-
-def _somewhere(network: SpringNetwork) -> FloatArray:
-    return np.zeros((len(network.anchored), 3))
 
 
 def _run(
@@ -193,7 +194,7 @@ def scalar_tables(network: SpringNetwork, control: SpringControl) -> SpringTable
     return SpringTables(
         network.edges, given["rest_lengths"], given["knee_lengths"], network.stiffness,
         network.stiffening, network.anchored, given["anchors"], network.anchor_lengths,
-        given["anchor_stiffness"], given["hold_targets"], network.hold_stiffness, given["load"],
+        given["anchor_stiffness"], given["hold_targets"], given["hold_stiffness"], given["load"],
         network.inv_mass,
     )  # fmt: skip
 
@@ -233,6 +234,6 @@ def _pack_tables(
         layout.edge_fields(given["rest_lengths"], given["knee_lengths"], network.stiffness),
         np.array([network.stiffening], np.float32), layout.anchor_start,
         layout.anchor_fields(*anchors.T, network.anchor_lengths, given["anchor_stiffness"]),
-        layout.vectors(given["hold_targets"] - centre), layout.scalars(network.hold_stiffness),
+        layout.vectors(given["hold_targets"] - centre), layout.scalars(given["hold_stiffness"]),
         layout.vectors(given["load"]), layout.scalars(network.inv_mass), layout.own_rows(),
     )  # fmt: skip

@@ -56,6 +56,11 @@ class Run(Protocol):
         """Tell whether every coordinate is a number."""
         ...
 
+    @property
+    def byte_count(self) -> int:
+        """Memory of the tables, the positions and what goes with them [bytes]."""
+        ...
+
 
 def _controlled(
     name: str, given: FloatArray | None, rest: FloatArray, pose_count: int | None
@@ -201,6 +206,14 @@ class SingleRun:
     def is_finite(self) -> bool:
         """Tell whether every coordinate is a number."""
         return bool(np.isfinite(self._rows).all())
+
+    @property
+    def byte_count(self) -> int:
+        """Memory of the tables, the positions and their gradients [bytes]."""
+        own = (self._p, self._g, self._targets, *self._rings, *self._pushed)
+        return sum(
+            np.asarray(t).nbytes for t in (*own, *self._layout.tables, *self._layout.volumes)
+        )
 
 
 class LaneRun:
@@ -365,3 +378,11 @@ class LaneRun:
     def is_finite(self) -> bool:
         """Tell whether every coordinate is a number."""
         return bool(np.isfinite(self._rows).all())
+
+    @property
+    def byte_count(self) -> int:
+        """Memory of the tables, the positions of all poses and their gradients [bytes]."""
+        layout = self._layout
+        own = (self._x, self._g, self._w, self._targets, *layout.rings)
+        pushed = [table for block in self._pushed for table in block]
+        return sum(np.asarray(t).nbytes for t in (*own, *pushed, *layout.tables, *layout.volumes))

@@ -25,5 +25,5 @@ def energy_at(network: SpringNetwork, positions: FloatArray, control: SpringCont
     reach = np.linalg.norm(positions[network.anchored] - given["anchors"], axis=1)
     energy += 0.5 * float(given["anchor_stiffness"] @ (reach - network.anchor_lengths) ** 2)
     away = ((positions - given["hold_targets"]) ** 2).sum(axis=1)
-    energy += 0.5 * float(network.hold_stiffness @ away)
+    energy += 0.5 * float(given["hold_stiffness"] @ away)
     return energy - float((given["load"] * positions).sum())

@@ -180,6 +180,8 @@ class SpringControl:
         Never above that of the network.
     hold_targets : (n, 3) float64, optional
         Where the holds draw to [mm]; the rest positions by default.
+    hold_stiffness : (n,) float64, optional
+        Never above that of the network.
     rest_lengths, knee_lengths : (e,) float64, optional
         Of a network whose rest shape is moved as a whole [mm].
     load : (n, 3) float64, optional
@@ -188,6 +190,7 @@ class SpringControl:
     anchors: FloatArray | None = None
     anchor_stiffness: FloatArray | None = None
     hold_targets: FloatArray | None = None
+    hold_stiffness: FloatArray | None = None
     rest_lengths: FloatArray | None = None
     knee_lengths: FloatArray | None = None
     load: FloatArray | None = None
@@ -200,7 +203,7 @@ class SpringControl:
         ShapeError
             If a shape is wrong, an entry is not finite, or anchors are missing.
         ParameterError
-            If an anchor spring would be stiffer than the stable step allows for.
+            If a spring would be stiffer than the stable step allows for.
         """
         anchors = self.anchors
         if anchors is None and len(network.anchored):
@@ -209,6 +212,7 @@ class SpringControl:
             "anchors": np.zeros((0, 3)),
             "anchor_stiffness": network.anchor_stiffness,
             "hold_targets": network.rest_positions,
+            "hold_stiffness": network.hold_stiffness,
             "rest_lengths": network.rest_lengths,
             "knee_lengths": network.knee_lengths,
             "load": network.load,
@@ -226,11 +230,12 @@ class SpringControl:
             if not np.isfinite(value).all():
                 raise ShapeError(f"control.{name}: every entry must be finite")
             result[name] = value
-        if (result["anchor_stiffness"] > network.anchor_stiffness * (1.0 + 1e-9)).any():
-            raise ParameterError(
-                "control.anchor_stiffness: above that of the network, for which the stable step "
-                "is computed; build the network with the largest stiffness"
-            )
+        for name in ("anchor_stiffness", "hold_stiffness"):
+            if (result[name] > getattr(network, name) * (1.0 + 1e-9)).any():
+                raise ParameterError(
+                    f"control.{name}: above that of the network, for which the stable step is "
+                    "computed; build the network with the largest stiffness"
+                )
         return result
 
 
