@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from risorius._check import FloatArray
@@ -57,6 +57,16 @@ class Binding:
             pull = self.pulls[control].joined(pull)
         self.pulls[control], self.fields[control] = pull, motion
 
+    def take(self, muscle: Muscle, other: Binding) -> None:
+        """Store what `other` holds of a muscle."""
+        for name in (f"{muscle.name}_l", f"{muscle.name}_r") if muscle.mirror else (muscle.name,):
+            if name in other.fibres:
+                self.fibres[name] = other.fibres[name]
+        for control in muscle.control_names:
+            if control in other.fields:
+                self.pulls[control] = other.pulls[control]
+                self.fields[control] = other.fields[control]
+
 
 def bind_muscles(
     muscle_map: MuscleMap,
@@ -64,6 +74,9 @@ def bind_muscles(
     fitted: FittedSkull,
     skin: Skin,
     mechanics: Mechanics,
+    *,
+    kept: Binding | None = None,
+    changed: Collection[str] = (),
 ) -> Binding:
     """Bind every muscle; on a symmetric skin the right ones are mirror images of the left.
 
@@ -75,10 +88,16 @@ def bind_muscles(
     fitted : FittedSkull
     skin : Skin
     mechanics : Mechanics
+    kept : Binding, optional
+        Of the same head before a person `changed` muscles of these names (without side); what it
+        holds of all others is taken over.
     """
     binding = Binding()
     solver = FieldSolver(skin, mechanics.lips)
     for muscle in muscle_map.muscles:
+        if kept is not None and muscle.name not in changed:
+            binding.take(muscle, kept)
+            continue
         if isinstance(muscle.action, MouthAction):
             pull = mouth_pull(muscle.action, skin)
             binding.put(muscle.name, pull, skin.even_vectors(solver.solve(pull)))
@@ -100,6 +119,9 @@ def bind_muscles(
                 continue
             pull = _pull(muscle, binding.fibres.get(name), skin, mechanics, corners)
             binding.put(control, pull, solver.solve(pull))
+    if kept is not None:
+        binding.companions.update(kept.companions)
+        return binding
     _bind_lids(binding, solver, skin, mechanics)
     floor = solver.solve(submental_pull(skin, mechanics, fitted))
     binding.companions["jaw_pitch"] = skin.even_vectors(floor) / REFERENCE_PITCH

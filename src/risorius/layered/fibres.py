@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -49,7 +50,9 @@ class _Support:
         return np.where(hits.hit, _OUTSIDE - hits.distance, np.nan)
 
 
-def lay_fibres(muscle_map: MuscleMap, skull: Skull) -> dict[str, FloatArray]:
+def lay_fibres(
+    muscle_map: MuscleMap, skull: Skull, *, kept: Mapping[str, FloatArray] | None = None
+) -> dict[str, FloatArray]:
     """Lay the left (or only) fibres of every sheet on what it lies on.
 
     Parameters
@@ -57,6 +60,8 @@ def lay_fibres(muscle_map: MuscleMap, skull: Skull) -> dict[str, FloatArray]:
     muscle_map : MuscleMap
     skull : Skull
         In the canonical frame of the built-in head; the fibres are given there.
+    kept : mapping of str to (s, f, 3) float64, optional
+        Fibres that are known already and are not laid again [mm].
 
     Returns
     -------
@@ -66,13 +71,17 @@ def lay_fibres(muscle_map: MuscleMap, skull: Skull) -> dict[str, FloatArray]:
     result: dict[str, FloatArray] = {}
     tops: dict[str, TriMesh] = {}
     bones = skull.surfaces
+    known = kept or {}
     for muscle in muscle_map.muscles:
         if not isinstance(muscle.shape, Sheet):
             continue
         meshes = [mesh for name in muscle.on for mesh in bones.get(name, ())]
         meshes += [tops[name] for name in muscle.on if name in tops]
-        support = _Support(Scene(meshes) if meshes else None, muscle.shape.direction)
-        fibres = _lay(muscle, muscle.shape, skull, support)
+        scene = Scene(meshes) if meshes and muscle.name not in known else None
+        support = _Support(scene, muscle.shape.direction)
+        fibres = known.get(muscle.name)
+        if fibres is None:
+            fibres = _lay(muscle, muscle.shape, skull, support)
         result[muscle.name] = fibres
         tops[muscle.name] = _top(fibres, support, muscle.thickness)
     return result

@@ -19,7 +19,13 @@ from risorius.layered.layer_order import layer_order
 from risorius.layered.muscle import Muscle, Ring, Sheet
 from risorius.layered.muscle_entry import read_muscle
 
-__all__ = ["MuscleMap", "default_muscle_map", "parse_muscle_map", "read_muscle_map"]
+__all__ = [
+    "MuscleMap",
+    "default_muscle_map",
+    "muscle_entry",
+    "parse_muscle_map",
+    "read_muscle_map",
+]
 
 SCHEMA = "risorius/muscle-map"
 VERSION = 1
@@ -68,7 +74,7 @@ class MuscleMap:
             "landmarks": {
                 name: np.round(place, 3).tolist() for name, place in self.landmarks.items()
             },
-            "muscles": [_entry(muscle) for muscle in self.muscles],
+            "muscles": [muscle_entry(muscle) for muscle in self.muscles],
         }
 
 
@@ -112,7 +118,8 @@ def default_muscle_map() -> MuscleMap:
     return parse_muscle_map(json.loads(text), source="muscle_map.json")
 
 
-def _entry(muscle: Muscle) -> dict[str, Any]:
+def muscle_entry(muscle: Muscle) -> dict[str, Any]:
+    """Return a muscle as it stands in the file."""
     entry: dict[str, Any] = {
         "name": muscle.name,
         "kind": muscle.kind,
