@@ -18,6 +18,7 @@ from risorius.solvers.springs import SpringControl, SpringNetwork, SpringState
 __all__ = [
     "LeapfrogParameters",
     "Moved",
+    "PackedRun",
     "advance",
     "edge_forces",
     "forces_at",
@@ -27,6 +28,7 @@ __all__ = [
 
 Path = Literal["packed", "scalar"]
 _PATHS = ("packed", "scalar")
+_ORIGIN = np.zeros(3)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,29 +164,17 @@ def _run(
     limit: int,
     path: Path,
 ) -> Moved:
-    one_of("path", path, _PATHS)
-    move = _packed if path == "packed" else _scalar
-    moved = move(network, state, control, parameters, limit)
-    if not (np.isfinite(moved.state.positions).all() and np.isfinite(moved.residual)):
-        raise SolverError(
-            f"springs: not finite after {moved.steps} steps (residual {moved.residual:g}); take "
-            f"a smaller step_share than {parameters.step_share:g}"
-        )
-    return moved
-
-
-def _scalar(
-    network: SpringNetwork,
-    state: SpringState,
-    control: SpringControl,
-    p: LeapfrogParameters,
-    limit: int,
-) -> Moved:
+    if one_of("path", path, _PATHS) == "packed":
+        run = PackedRun(network, state, control, parameters)
+        steps = run.advance(limit)
+        return Moved(SpringState(run.positions, run.velocities), steps, run.residual)
+    p = parameters
     x, v = state.positions.copy(), state.velocities.copy()
     steps, residual = leapfrog(
-        x, v, scalar_tables(network, control), np.zeros_like(x), p.step_share * network.stable_step,
-        p.drag, p.kinetic, p.tolerance, limit,
+        x, v, scalar_tables(network, control), np.zeros_like(x),
+        p.step_share * network.stable_step, p.drag, p.kinetic, p.tolerance, limit,
     )  # fmt: skip
+    _require_finite(np.isfinite(x).all() and np.isfinite(residual), int(steps), p)
     return Moved(SpringState(x, v), int(steps), float(residual))
 
 
@@ -199,41 +189,97 @@ def scalar_tables(network: SpringNetwork, control: SpringControl) -> SpringTable
     )  # fmt: skip
 
 
-def _packed(
-    network: SpringNetwork,
-    state: SpringState,
-    control: SpringControl,
-    p: LeapfrogParameters,
-    limit: int,
-) -> Moved:
-    layout = network.layout
-    given = control.resolved(network)
-    # Counted from the middle, float32 is as exact as it can be.
-    centre = network.rest_positions.mean(axis=0) if network.particle_count else np.zeros(3)
-    x = layout.vectors(state.positions - centre)
-    v = layout.vectors(state.velocities)
-    rows = layout.rows(x)
-    tables = _pack_tables(network, given, centre)
-    peak = np.zeros(PACK, np.float32)
-    steps, residual = leapfrog_packs(
-        rows, x, v, tables, np.zeros_like(x), peak, p.step_share * network.stable_step,
-        p.drag, p.kinetic, p.tolerance, limit,
-    )  # fmt: skip
-    positions = layout.vectors_back(x) + centre
-    positions[network.fixed] = state.positions[network.fixed]
-    return Moved(SpringState(positions, layout.vectors_back(v)), int(steps), float(residual))
+class PackedRun:
+    """A network in motion, kept as the packed kernel has it; for frame after frame.
+
+    Parameters
+    ----------
+    network : SpringNetwork
+    state : SpringState
+        Where it starts.
+    control : SpringControl
+    parameters : LeapfrogParameters, optional
+    """
+
+    def __init__(
+        self,
+        network: SpringNetwork,
+        state: SpringState,
+        control: SpringControl,
+        parameters: LeapfrogParameters | None = None,
+    ) -> None:
+        self._network, self._parameters = network, parameters or LeapfrogParameters()
+        # Counted from the middle, float32 is as exact as it can be.
+        self._centre = network.rest_positions.mean(axis=0) if network.particle_count else _ORIGIN
+        self._fixed = state.positions[network.fixed]
+        layout = network.layout
+        self._x = layout.vectors(state.positions - self._centre)
+        self._v = layout.vectors(state.velocities)
+        self._rows = layout.rows(self._x)
+        self._forces = np.zeros_like(self._x)
+        self._peak = np.zeros(PACK, np.float32)
+        self._tables = self._tables_of(control)
+        self.residual = 0.0
+        """Largest force over mass at the last step."""
+
+    def ask(self, control: SpringControl) -> None:
+        """Change what is asked of the network."""
+        self._tables = self._tables_of(control)
+
+    def shift(self, motion: FloatArray) -> None:
+        """Move the particles by `motion` (n, 3) [mm]; fixed ones stay."""
+        layout = self._network.layout
+        free = np.where(self._network.fixed[:, None], 0.0, motion)
+        self._x += layout.vectors(free)
+        self._rows = layout.rows(self._x)
+
+    def advance(self, steps: int) -> int:
+        """Take `steps` steps, fewer if the network comes to rest; return how many.
+
+        Raises
+        ------
+        SolverError
+            If the motion is no longer finite.
+        """
+        p = self._parameters
+        taken, residual = leapfrog_packs(
+            self._rows, self._x, self._v, self._tables, self._forces, self._peak,
+            p.step_share * self._network.stable_step, p.drag, p.kinetic, p.tolerance, steps,
+        )  # fmt: skip
+        self.residual = float(residual)
+        _require_finite(np.isfinite(self._x).all() and np.isfinite(residual), int(taken), p)
+        return int(taken)
+
+    @property
+    def positions(self) -> FloatArray:
+        """Where the particles are (n, 3) [mm]."""
+        result = self._network.layout.vectors_back(self._x) + self._centre
+        result[self._network.fixed] = self._fixed
+        return result
+
+    @property
+    def velocities(self) -> FloatArray:
+        """How fast they are (n, 3) [mm per unit of time]."""
+        return self._network.layout.vectors_back(self._v)
+
+    def _tables_of(self, control: SpringControl) -> PackTables:
+        network, layout = self._network, self._network.layout
+        given = control.resolved(network)
+        anchors = given["anchors"] - self._centre
+        return PackTables(
+            layout.edge_start, layout.neighbours,
+            layout.edge_fields(given["rest_lengths"], given["knee_lengths"], network.stiffness),
+            np.array([network.stiffening], np.float32), layout.anchor_start,
+            layout.anchor_fields(*anchors.T, network.anchor_lengths, given["anchor_stiffness"]),
+            layout.vectors(given["hold_targets"] - self._centre),
+            layout.scalars(given["hold_stiffness"]), layout.vectors(given["load"]),
+            layout.scalars(network.inv_mass), layout.own_rows(),
+        )  # fmt: skip
 
 
-def _pack_tables(
-    network: SpringNetwork, given: dict[str, FloatArray], centre: FloatArray
-) -> PackTables:
-    layout = network.layout
-    anchors = given["anchors"] - centre
-    return PackTables(
-        layout.edge_start, layout.neighbours,
-        layout.edge_fields(given["rest_lengths"], given["knee_lengths"], network.stiffness),
-        np.array([network.stiffening], np.float32), layout.anchor_start,
-        layout.anchor_fields(*anchors.T, network.anchor_lengths, given["anchor_stiffness"]),
-        layout.vectors(given["hold_targets"] - centre), layout.scalars(given["hold_stiffness"]),
-        layout.vectors(given["load"]), layout.scalars(network.inv_mass), layout.own_rows(),
-    )  # fmt: skip
+def _require_finite(sound: bool, steps: int, parameters: LeapfrogParameters) -> None:
+    if not sound:
+        raise SolverError(
+            f"springs: not finite after {steps} steps; take a smaller step_share than "
+            f"{parameters.step_share:g}"
+        )
