@@ -1,4 +1,4 @@
-# pyright: basic, reportCallIssue=false
+# pyright: basic, reportCallIssue=false, reportGeneralTypeIssues=false
 # ruff: noqa: PLR0913, PLR0917
 """The volumes of `LANES` poses, each pose in its lane.
 
@@ -102,7 +102,8 @@ def _by_faces(x, w, g, v, volume):
 @njit(**FLAGS)
 def _by_rings(x, w, g, v, r, volume):
     """Do what `_by_faces` does, without writing to one particle more than once."""
-    moment = weight = splat(x, 0.0)
+    moment = splat(x, 0.0)
+    weight = moment
     for cap in range(v.cap_start[volume], v.cap_start[volume + 1]):
         gx = gy = gz = splat(x, 0.0)
         first, last = v.rim_start[cap], v.rim_start[cap + 1]
