@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from risorius.anatomy.eyelids import Eyelids, LidParameters, build_eyelids
-from risorius.anatomy.radial_surface import RadialSurface
 from risorius.head.eyes import EYE_LANDMARKS
 from risorius.mesh.core import TriMesh
 from risorius.mesh.lids import LidMargins, find_lids
@@ -136,13 +135,24 @@ def test_a_ball_far_away_is_not_taken_as_the_eye() -> None:
     np.testing.assert_array_equal(lids.centre, LIDS.centre)
 
 
-def test_the_radial_surface_of_a_ball_is_its_radius_in_every_direction() -> None:
-    points, polygons = sphere((3.0, 4.0, 5.0), (12.0,) * 3, rows=40, columns=60)
+def test_lids_ride_over_the_cornea_of_an_eye_that_looks_aside() -> None:
+    points, polygons = sphere((0.0, 0.0, 0.0), (12.0,) * 3, rows=40, columns=60)
     faces = [(p[0], p[k], p[k + 1]) for p in polygons for k in range(1, len(p) - 1)]
-    surface = RadialSurface.of_mesh(TriMesh(points, np.array(faces)), np.array([3.0, 4.0, 5.0]))
-    arms = np.random.default_rng(1).normal(size=(200, 3)) * [1.0, 1.0, 0.3] + [0.0, 0.0, 1.0]
-    arms = arms[arms[:, 2] > 0.1]
-    np.testing.assert_allclose(surface.radius(arms), 12.0, rtol=1e-9)
+    arm = points / 12.0
+    points = points + 1.5 * np.clip((arm[:, 2:] - 0.85) / 0.15, 0.0, 1.0) * arm
+    eye = TriMesh(points + LIDS.centre, np.array(faces))
+    lids = build_eyelids(SHEET.mesh, _margins(), eye, LIDS.centre)
+    skin = REST.copy()
+    aside = 12.3 * np.array([np.sin(0.7), 0.0, np.cos(0.7)])
+    nearest = lids.vertices[
+        np.linalg.norm(REST[lids.vertices] - lids.centre - aside, axis=1).argmin()
+    ]
+    skin[nearest] = lids.centre + aside
+    looking = lids.move(skin, upper=0.0, lower=0.0, gaze=(np.degrees(0.7), 0.0))
+    assert np.linalg.norm(looking[nearest] - lids.centre) > 13.0
+    away = lids.move(skin, upper=0.0, lower=0.0, gaze=(-np.degrees(0.7), 0.0))
+    np.testing.assert_array_equal(away[nearest], skin[nearest])
+    assert lids.move(skin, upper=0.0, lower=0.0, gaze=(0.0, 0.0)) is skin
 
 
 @pytest.mark.parametrize("side", ["l", "r"])

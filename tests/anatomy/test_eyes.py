@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from risorius.anatomy.eyes import Eyeball, fit_eyeball, texture_shift
+from risorius.anatomy.eyes import Eyeball, fit_eyeball, texture_shift, turn_back
 from risorius.mesh.core import TriMesh
 from tests.face_fixtures import builtin_face
 from tests.synthetic import Piece, sphere
@@ -66,13 +66,14 @@ def test_a_turning_eye_stays_in_its_socket() -> None:
     np.testing.assert_allclose(np.linalg.norm(moved - eye.centre, axis=1), before, atol=1e-9)
 
 
-def test_one_eye_turns_alone() -> None:
+def test_one_eye_turns_alone_and_its_lids_ride_over_the_cornea() -> None:
     face = builtin_face()
-    moved = face.displace({"gaze_yaw_l": 30.0})
-    rest = np.ones(len(moved), bool)
-    rest[face.head.parts["eye_left"].source] = False
-    assert np.abs(moved[~rest]).max() > 3.0
-    np.testing.assert_array_equal(moved[rest], 0.0)
+    moved = np.linalg.norm(face.displace({"gaze_yaw_l": 30.0}), axis=1)
+    head = face.head
+    assert moved[head.parts["eye_left"].source].max() > 3.0
+    near = np.linalg.norm(head.positions - face.mechanics.eyes["l"].centre, axis=1) < 25.0
+    np.testing.assert_array_equal(moved[~near], 0.0)
+    assert moved[head.parts["skin"].source].max() < 1.5
 
 
 def test_the_texture_shifts_against_the_gaze_as_published() -> None:
@@ -85,3 +86,11 @@ def test_the_texture_shifts_against_the_gaze_as_published() -> None:
 def test_the_iris_stays_on_the_texture() -> None:
     assert texture_shift(yaw=-170.0, pitch=-170.0) == (0.25, -0.25)
     assert texture_shift(yaw=170.0, pitch=170.0, uv_width=0.4) == pytest.approx((-0.1, 0.1))
+
+
+@given(st.floats(-40, 40), st.floats(-35, 30))
+def test_turning_back_undoes_a_turn(yaw: float, pitch: float) -> None:
+    eye = Eyeball(np.zeros(3), 12.0, True)
+    arms = np.random.default_rng(2).normal(size=(20, 3))
+    turned = eye.turn(arms, yaw=yaw, pitch=pitch)
+    np.testing.assert_allclose(turn_back(turned, yaw=yaw, pitch=pitch), arms, atol=1e-12)

@@ -10,7 +10,6 @@ from scipy.sparse import csr_matrix
 from scipy.spatial import cKDTree
 
 from risorius._check import BoolArray, FloatArray, IntArray
-from risorius.anatomy.eyes import Eyeball
 from risorius.anatomy.jaw import JawPose
 from risorius.anatomy.kernels.hull_push import hull_shortfall
 from risorius.anatomy.lip_contact import LipContact
@@ -194,10 +193,8 @@ class Contact:
             return moved
         arm = self.skin.positions[eye.vertices] + travel - eye.centre
         distance = np.linalg.norm(arm, axis=1)
-        ball = Eyeball(np.zeros(3), 1.0, True)
-        # Where the vertex meets the eyeball as it was tabulated: turn back, last turn first.
-        looked = ball.turn(ball.turn(arm, yaw=-yaw, pitch=0.0), yaw=0.0, pitch=-pitch)
-        lift = np.maximum(eye.surface.radius(looked) + eye.least - distance, 0.0)
+        surface = eye.surface.radius(arm, yaw=yaw, pitch=pitch)
+        lift = np.maximum(surface + eye.least - distance, 0.0)
         if not turned:
             lift[~travel.any(axis=1)] = 0.0
         if not lift.any():

@@ -97,12 +97,22 @@ class Eyelids:
         up = lower * self.closing if lower >= 0.0 else -lower * p.lower_drop * self.opening
         return self.weight * np.where(self.upper, down, up)
 
-    def move(self, positions: FloatArray, *, upper: float, lower: float) -> FloatArray:
+    def move(
+        self,
+        positions: FloatArray,
+        *,
+        upper: float,
+        lower: float,
+        gaze: tuple[float, float] = (0.0, 0.0),
+    ) -> FloatArray:
         """Return the skin positions (n, 3) with the lids moved, starting from `positions`.
 
-        The lid vertices turn about the axis and keep clear of the eyeball.
+        The lid vertices turn about the axis and keep clear of the eyeball, whose cornea goes
+        with the `gaze`, yaw and pitch [deg]; the lids ride over it.
         """
-        if upper == 0.0 and lower == 0.0:
+        yaw, pitch = gaze
+        looking = self.surface is not None and (yaw != 0.0 or pitch != 0.0)
+        if upper == 0.0 and lower == 0.0 and not looking:
             return positions
         result = positions.copy()
         start = positions[self.vertices]
@@ -111,8 +121,9 @@ class Eyelids:
         if self.surface is not None:
             arm = turned - self.centre
             distance = np.linalg.norm(arm, axis=1)
-            least = self.surface.radius(arm) + self.floor
-            lift = np.where(angle != 0.0, np.maximum(least - distance, 0.0), 0.0)
+            least = self.surface.radius(arm, yaw=yaw, pitch=pitch) + self.floor
+            free = (angle != 0.0) | looking
+            lift = np.where(free, np.maximum(least - distance, 0.0), 0.0)
             turned = turned + arm * (lift / np.maximum(distance, 1e-9))[:, None]
         result[self.vertices] = turned
         return result

@@ -12,7 +12,7 @@ from risorius.anatomy.jaw import rotate
 from risorius.head.part_geometry import fit_sphere
 from risorius.mesh.core import TriMesh
 
-__all__ = ["Eyeball", "fit_eyeball", "texture_shift"]
+__all__ = ["Eyeball", "fit_eyeball", "texture_shift", "turn_back"]
 
 # An eye whose vertices miss the best sphere by more than this share of its radius is not round.
 _ROUND = 0.12
@@ -43,6 +43,16 @@ class Eyeball:
         side = np.array([1.0, 0.0, 0.0])
         raised = rotate(points, about=self.centre, axis=side, angle=-np.radians(pitch))
         return rotate(raised, about=self.centre, axis=up, angle=np.radians(yaw))
+
+
+def turn_back(arm: FloatArray, *, yaw: float, pitch: float) -> FloatArray:
+    """Return the directions (n, 3) that a turn by `yaw` and `pitch` [deg] brought to `arm`.
+
+    The inverse of `Eyeball.turn` about an eye at the origin: last turn first.
+    """
+    origin = np.zeros(3)
+    level = rotate(arm, about=origin, axis=np.array([0.0, 1.0, 0.0]), angle=-np.radians(yaw))
+    return rotate(level, about=origin, axis=np.array([1.0, 0.0, 0.0]), angle=np.radians(pitch))
 
 
 def fit_eyeball(mesh: TriMesh) -> Eyeball:

@@ -164,6 +164,10 @@ class Mechanics:
                 moved,
                 upper=values.get(f"lid_upper_{side}", 0.0),
                 lower=values.get(f"lid_lower_{side}", 0.0),
+                gaze=(
+                    values.get(f"gaze_yaw_{side}", 0.0),
+                    values.get(f"gaze_pitch_{side}", 0.0),
+                ),
             )
         jaw = JawPose(
             values.get("jaw_pitch", 0.0),

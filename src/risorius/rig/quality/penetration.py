@@ -16,7 +16,7 @@ from risorius.rig.quality.subject import part_deltas
 from risorius.rig.rig import Rig
 from risorius.spatial.closest import closest_points, winding_numbers
 
-__all__ = ["COLLIDERS", "Penetration", "penetrations", "solid"]
+__all__ = ["COLLIDERS", "Penetration", "depths_inside", "penetrations", "solid"]
 
 COLLIDERS = ("teeth_upper", "teeth_lower", "eye_left", "eye_right")
 """Parts that the skin must stay out of."""
@@ -123,16 +123,16 @@ def _depth_in_shapes(
     body: TriMesh, moved: FloatArray, rest: FloatArray, motion: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the depth (s, k) of points in a solid in all shapes, and at rest (k,)."""
-    rest_depth = _depths(body, rest)
+    rest_depth = depths_inside(body, rest)
     rigid = rigid_motions(body.positions, moved)
     posed = rest + motion
     local = np.einsum("skj,sji->ski", posed - rigid.offset[:, None], rigid.rotation)
     local[~rigid.fits] = rest
     changed = np.abs(local - rest).max(axis=2, initial=0.0) > _SAME
     depth = np.broadcast_to(rest_depth, changed.shape).copy()
-    depth[changed] = _depths(body, local[changed])
+    depth[changed] = depths_inside(body, local[changed])
     for shape in np.flatnonzero(~rigid.fits).tolist():
-        depth[shape] = _depths(body.at(body.positions + moved[shape]), posed[shape])
+        depth[shape] = depths_inside(body.at(body.positions + moved[shape]), posed[shape])
     return depth, rest_depth
 
 
@@ -149,8 +149,8 @@ def _summary(depth: FloatArray, rest_depth: FloatArray, source: IntArray) -> lis
     return result
 
 
-def _depths(body: TriMesh, points: FloatArray) -> FloatArray:
-    """Return how deep (q,) points lie inside a solid, 0 outside."""
+def depths_inside(body: TriMesh, points: FloatArray) -> FloatArray:
+    """Return how deep (q,) [mm] the points (q, 3) lie inside a body of `solid`, 0 outside."""
     depth = np.zeros(len(points))
     if not body.face_count:
         return depth
