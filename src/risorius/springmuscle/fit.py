@@ -1,0 +1,161 @@
+"""Fit the muscles of a recipe to a head."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from risorius._check import FloatArray
+from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.skin import mirror_partners
+from risorius.springmuscle.bones import Bones, SkinBones
+from risorius.springmuscle.fibres import make_fibres
+from risorius.springmuscle.fit_parameters import FitParameters
+from risorius.springmuscle.grid import Layer, find_patch, lay_out
+from risorius.springmuscle.merging import merge_muscles
+from risorius.springmuscle.muscle import Fibre, FittedMuscle, MuscleAction
+from risorius.springmuscle.muscle_set import MuscleSet
+from risorius.springmuscle.recipe import MuscleOutline, OutlineRecipe
+from risorius.springmuscle.refine import refine
+from risorius.springmuscle.row_bones import GrownBones, grow_bones, row_bones
+from risorius.springmuscle.surface import SkinSurface
+
+__all__ = ["Ground", "fit_muscle", "fit_muscles"]
+
+_MIRROR = np.array([-1.0, 1.0, 1.0])
+# Axes of a mirrored ellipsoid: the one along the skin turns round, so that frames stay right.
+_TURNED = np.array([1.0, -1.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """What muscles of one head are fitted to; built once, used for every fit.
+
+    Parameters
+    ----------
+    surface : SkinSurface
+    bones : Bones
+    pivots : mapping of int to (3,) float64
+        Centres of the left (1) and right (-1) eyeball, those that there are [mm].
+    symmetric : bool
+        Whether the skin is its own mirror image; then right muscles are those of the left.
+    parameters : FitParameters
+    """
+
+    surface: SkinSurface
+    bones: Bones
+    pivots: dict[int, FloatArray]
+    symmetric: bool
+    parameters: FitParameters
+
+    @staticmethod
+    def build(
+        mechanics: Mechanics, bones: Bones, parameters: FitParameters | None = None
+    ) -> Ground:
+        """Measure a head for muscles."""
+        sides = {"l": 1, "r": -1}
+        return Ground(
+            SkinSurface.build(mechanics),
+            bones,
+            {sides[side]: eye.centre for side, eye in mechanics.eyes.items()},
+            mirror_partners(mechanics.head.skin.mesh) is not None,
+            parameters or FitParameters(),
+        )
+
+    @cached_property
+    def skin_bones(self) -> SkinBones:
+        """What every skin vertex lies on."""
+        return self.bones.under(self.surface, max_depth=self.parameters.bone_depth)
+
+    @cached_property
+    def grown_bones(self) -> GrownBones:
+        """The same, grown over skin without bone."""
+        return grow_bones(self.surface, self.skin_bones)
+
+
+def fit_muscles(recipe: OutlineRecipe, ground: Ground) -> MuscleSet:
+    """Fit all muscles of a recipe and link their ends.
+
+    Raises
+    ------
+    LandmarkError, ParameterError
+        If an outline cannot be laid on this head; the message names the muscle.
+    """
+    outlines = recipe.sided()
+    fitted: dict[str, FittedMuscle] = {}
+    for outline in outlines:
+        twin = outline.name[:-2] + "_l"
+        if ground.symmetric and outline.name.endswith("_r") and twin in fitted:
+            fitted[outline.name] = mirrored(fitted[twin], outline)
+        else:
+            fitted[outline.name] = fit_muscle(outline, ground)
+    muscles = tuple(fitted.values())
+    if not ground.parameters.merge:
+        return MuscleSet(muscles)
+    hosts = tuple(outline.settings.host for outline in outlines)
+    return merge_muscles(muscles, hosts=hosts, yielding=ground.parameters.yielding)
+
+
+def fit_muscle(outline: MuscleOutline, ground: Ground) -> FittedMuscle:
+    """Fit one muscle; its outline is named with its side, see `OutlineRecipe.sided`.
+
+    Raises
+    ------
+    LandmarkError, ParameterError
+        If the outline cannot be laid on this head.
+    """
+    surface, parameters = ground.surface, ground.parameters
+    layout = lay_out(outline, surface)
+    patch = find_patch(layout, surface, parameters)
+    layer = Layer(outline, surface, parameters)
+    paired = outline.name.endswith(("_l", "_r"))
+    refined = refine(layout, layer, patch, mirror=ground.symmetric and not paired)
+    bones = row_bones(
+        refined.points, refined.normals, patch, surface, ground.grown_bones, closed=layout.closed
+    )
+    fibres = make_fibres(refined, bones, layer, closed=layout.closed)
+    pivot = None
+    if outline.ring is not None and outline.ring.around_eye and parameters.lines:
+        pivot = ground.pivots.get(-1 if outline.name.endswith("_r") else 1)
+    return FittedMuscle(
+        outline.name, outline.kind, _action(outline, ground, patch.edge), fibres, layout.closed,
+        pivot, refined.points, refined.normals, layout.points, refined.report,
+    )  # fmt: skip
+
+
+def _action(outline: MuscleOutline, ground: Ground, edge: float) -> MuscleAction:
+    settings, scale = outline.settings, ground.surface.scale
+    own = settings.radius
+    radius = own * scale if own else max(ground.parameters.radius * scale, 2.0 * edge)
+    return MuscleAction(
+        control=outline.control or outline.name,
+        max_contraction=settings.max_contraction,
+        stiffness=settings.stiffness,
+        radius=radius,
+        slide=settings.slide if ground.parameters.slide else 0.0,
+    )
+
+
+def mirrored(muscle: FittedMuscle, outline: MuscleOutline) -> FittedMuscle:
+    """Return the mirror image of a left muscle, named as `outline`."""
+    return replace(
+        muscle,
+        name=outline.name,
+        action=replace(muscle.action, control=outline.control),
+        fibres=tuple(_mirrored_fibre(fibre) for fibre in muscle.fibres),
+        pivot=None if muscle.pivot is None else muscle.pivot * _MIRROR,
+        grid=muscle.grid * _MIRROR,
+        grid_normals=muscle.grid_normals * _MIRROR,
+        outline=muscle.outline * _MIRROR,
+    )
+
+
+def _mirrored_fibre(fibre: Fibre) -> Fibre:
+    return replace(
+        fibre,
+        points=fibre.points * _MIRROR,
+        frames=fibre.frames * _MIRROR[:, None] * _TURNED,
+        aims=None if fibre.aims is None else fibre.aims * _MIRROR,
+    )
