@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from risorius._check import FloatArray, as_number, one_of
 from risorius.errors import ParameterError, SolverError
@@ -174,7 +175,7 @@ def _run(
         x, v, scalar_tables(network, control), np.zeros_like(x),
         p.step_share * network.stable_step, p.drag, p.kinetic, p.tolerance, limit,
     )  # fmt: skip
-    _require_finite(np.isfinite(x).all() and np.isfinite(residual), int(steps), p)
+    _require_finite(x, float(residual), int(steps), p)
     return Moved(SpringState(x, v), int(steps), float(residual))
 
 
@@ -247,7 +248,7 @@ class PackedRun:
             p.step_share * self._network.stable_step, p.drag, p.kinetic, p.tolerance, steps,
         )  # fmt: skip
         self.residual = float(residual)
-        _require_finite(np.isfinite(self._x).all() and np.isfinite(residual), int(taken), p)
+        _require_finite(self._x, float(residual), int(taken), p)
         return int(taken)
 
     @property
@@ -277,8 +278,10 @@ class PackedRun:
         )  # fmt: skip
 
 
-def _require_finite(sound: bool, steps: int, parameters: LeapfrogParameters) -> None:
-    if not sound:
+def _require_finite(
+    places: npt.NDArray[Any], residual: float, steps: int, parameters: LeapfrogParameters
+) -> None:
+    if not (np.isfinite(places).all() and np.isfinite(residual)):
         raise SolverError(
             f"springs: not finite after {steps} steps; take a smaller step_share than "
             f"{parameters.step_share:g}"

@@ -1,0 +1,190 @@
+"""The spring-muscle face: ellipsoid muscles under a skin of springs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from risorius._check import FloatArray, IntArray
+from risorius.anatomy.contact import Contact
+from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.skin import build_skin, mirror_partners
+from risorius.anatomy.skull import builtin_skull
+from risorius.anatomy.skull_fit import MIRROR, fit_skull, hidden_skin
+from risorius.controls.control import Control, Pose, resolve_pose
+from risorius.controls.presets import mirrored
+from risorius.head.head import Head
+from risorius.solvers.leapfrog import Moved, settle
+from risorius.solvers.springs import SpringState
+from risorius.springmuscle.bones import SkinBones
+from risorius.springmuscle.contraction import Contraction
+from risorius.springmuscle.driving import Drive, Driver
+from risorius.springmuscle.live import LiveFace
+from risorius.springmuscle.muscle_set import MuscleSet
+from risorius.springmuscle.parameters import SpringParameters
+from risorius.springmuscle.relax import start_of
+from risorius.springmuscle.skin import SkinSprings, build_springs
+
+__all__ = ["SpringFace"]
+
+
+@dataclass(frozen=True, eq=False)
+class SpringFace:
+    """Spring muscles bound to a head (`risorius.rig.Face`).
+
+    Parameters
+    ----------
+    head : Head
+    mechanics : Mechanics
+    muscles : MuscleSet
+        Fitted under the skin.
+    springs : SkinSprings
+    driver : Driver
+        From controls to what the springs feel.
+    contact : Contact or None
+    controls : tuple of Control
+    parameters : SpringParameters
+    notes : tuple of str
+        What was left out, and why.
+    """
+
+    head: Head
+    mechanics: Mechanics
+    muscles: MuscleSet
+    springs: SkinSprings
+    driver: Driver
+    contact: Contact | None
+    controls: tuple[Control, ...]
+    parameters: SpringParameters
+    notes: tuple[str, ...] = ()
+
+    @staticmethod
+    def of_muscles(
+        head: Head,
+        muscles: MuscleSet,
+        *,
+        attachment: SkinBones | None = None,
+        mechanics: Mechanics | None = None,
+        parameters: SpringParameters | None = None,
+    ) -> SpringFace:
+        """Hang the skin of a head on muscles that have been fitted already.
+
+        Parameters
+        ----------
+        head : Head
+        muscles : MuscleSet
+        attachment : SkinBones, optional
+            Bone beneath each vertex; needed where the parameters hold the skin by bones.
+        mechanics : Mechanics, optional
+            Already built for this head.
+        parameters : SpringParameters, optional
+            The improved profile if left out.
+
+        Raises
+        ------
+        LandmarkError
+            If the head lacks the landmarks of mouth, eyes and chin.
+        MeshError
+            If the lips are welded.
+        """
+        p = parameters or SpringParameters.of_profile("improved")
+        moving = mechanics or Mechanics.build(head)
+        partner = mirror_partners(head.skin.mesh)
+        hidden = hidden_skin(moving.lips, moving.margins)
+        fitted = fit_skull(builtin_skull(), head, symmetric=partner is not None, hidden=hidden)
+        skin = build_skin(moving, fitted, partner)
+        springs = build_springs(skin, muscles, attachment, p)
+        driver = Driver(springs, Contraction(muscles), moving, p)
+        contact = Contact.build(skin, moving) if p.contact else None
+        controls = muscles.controls + moving.controls
+        return SpringFace(
+            head, moving, muscles, springs, driver, contact, controls, p, moving.notes
+        )
+
+    def settled(self, values: Mapping[str, float]) -> tuple[Drive, Moved]:
+        """Return what a pose asks of the springs and where they come to rest."""
+        drive = self.driver.drive(values)
+        start = start_of(self.springs, drive, passes=self.parameters.relaxation)
+        moved = settle(
+            self.springs.network, SpringState.still(start), drive.control,
+            parameters=self.parameters.motion,
+        )  # fmt: skip
+        return drive, moved
+
+    def displace_skin(self, values: Mapping[str, float]) -> FloatArray:
+        """Return the displacement (w, 3) [mm] of the welded skin by muscles alone.
+
+        Before the jaw, if the shape is carried by it; else the jaw's drag is part of it.
+        """
+        rest = self.springs.skin.positions
+        moving = self.driver.active(values).any()
+        if not self.parameters.carried:
+            jaw = any(values.get(name, 0.0) for name in ("jaw_pitch", "jaw_yaw", "jaw_protrusion"))
+            moving = moving or jaw
+        if not moving:
+            return np.zeros_like(rest)
+        partner = self.springs.skin.partner
+        if not self.parameters.even or partner is None:
+            return self._settled_skin(values)
+        return self._even_skin(values, partner)
+
+    def displace(self, pose: Pose) -> FloatArray:
+        """Return the displacement (n, 3) [mm, canonical frame] of every input vertex.
+
+        Converged from the same start, so that it depends on the pose only.
+
+        Raises
+        ------
+        ParameterError
+            If a control is unknown or not finite.
+        """
+        values = resolve_pose(self.controls, pose).values
+        return self.spread(self.displace_skin(values), values)
+
+    def pose(self, pose: Pose) -> FloatArray:
+        """Return the posed positions (n, 3) [mm, canonical frame] of every input vertex."""
+        return self.head.positions + self.displace(pose)
+
+    def live(self) -> LiveFace:
+        """Return a session at rest that is stepped frame by frame."""
+        return LiveFace(self)
+
+    def spread(self, skin: FloatArray, values: Mapping[str, float]) -> FloatArray:
+        """Return the displacement (n, 3) of all input vertices from the skin's (w, 3) [mm]."""
+        part = self.head.skin
+        if self.parameters.carried:
+            result = self.mechanics.pose(skin, values)
+        else:
+            result = self._dragged_parts(skin, values)
+        if self.contact is None or not any(values.values()):
+            return result
+        moved = result[part.first_source()]
+        part.spread(self.contact.resolve(moved, values), result)
+        return result
+
+    def _dragged_parts(self, skin: FloatArray, values: Mapping[str, float]) -> FloatArray:
+        """Let springs move the skin with the jaw, and mechanics all the rest."""
+        result = self.mechanics.pose(np.zeros_like(skin), values)
+        still = {name: value for name, value in values.items() if not name.startswith("jaw_")}
+        without = self.mechanics.pose(skin, still)
+        part = self.head.skin
+        part.spread(without[part.first_source()], result)
+        for kind, follower in self.mechanics.followers.items():
+            self.head.parts[kind].spread(follower.displace(skin), result)
+        return result
+
+    def _settled_skin(self, values: Mapping[str, float]) -> FloatArray:
+        _, moved = self.settled(values)
+        found = self.driver.uncarried(moved.state.positions, values)
+        result = found - self.springs.skin.positions
+        result[self.springs.network.fixed] = 0.0
+        return result
+
+    def _even_skin(self, values: Mapping[str, float], partner: IntArray) -> FloatArray:
+        controls = {control.name: control for control in self.controls}
+        opposite = dict(mirrored(values, controls))
+        own = self._settled_skin(values)
+        other = own if opposite == dict(values) else self._settled_skin(opposite)
+        return 0.5 * (own + other[partner] * MIRROR)

@@ -1,0 +1,208 @@
+"""The skin as a network of springs: edges, springs to muscles and bones, what holds it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from risorius._check import BoolArray, FloatArray, IntArray
+from risorius.anatomy.skin import Skin
+from risorius.anatomy.smooth_step import smooth_step
+from risorius.errors import ParameterError
+from risorius.mesh.connectivity import edges
+from risorius.solvers.leapfrog import edge_forces
+from risorius.solvers.spring_stiffness import edge_stiffness
+from risorius.solvers.springs import SpringNetwork
+from risorius.springmuscle.binding import bind_muscle
+from risorius.springmuscle.bones import SkinBones
+from risorius.springmuscle.muscle import JAW
+from risorius.springmuscle.muscle_set import MuscleSet
+from risorius.springmuscle.parameters import SpringParameters
+
+__all__ = ["SkinSprings", "build_springs"]
+
+# Springs that count by area have their plain stiffness at a vertex of so much skin [mm^2].
+_AREA = 8.0
+# Skin over a muscle that needs no reach; how far behind a lip's line skin still binds [mm].
+_SKIN, _LINING = 2.0, 3.0
+# How much more strongly skin is held where it must be still, over a spring to a muscle.
+_STILL = 20.0
+
+
+@dataclass(frozen=True, eq=False)
+class SkinSprings:
+    """The network of a skin with n vertices, and what its anchors hang on.
+
+    The anchors of the network are, in this order: feet on muscles, their mirrored partners, feet
+    on bones, their partners.
+
+    Parameters
+    ----------
+    skin : Skin
+    network : SpringNetwork
+        With a load that balances the pretension.
+    vertices, segments, muscles : (a,) int32
+        Skin vertex, ellipsoid and muscle of each muscle spring.
+    feet, partners : (a, 3) float64
+        Foot and mirrored foot in the coordinates of the relaxed ellipsoid's frame [mm].
+    rest_feet : (a, 3) float64
+        The feet in space [mm].
+    stiffness : (a,) float64
+        Of each muscle spring while its muscle is active.
+    bone_vertices : (b,) int32
+    bone_feet : (b, 3) float64
+        [mm].
+    on_jaw : (b,) bool
+    bone_stiffness : (2 b,) float64
+        Of their springs and of the partners, if there are any.
+    tissue : (n,) float64
+        Stiffness of what draws the skin home, without grips.
+    """
+
+    skin: Skin
+    network: SpringNetwork
+    vertices: IntArray
+    segments: IntArray
+    muscles: IntArray
+    feet: FloatArray
+    partners: FloatArray
+    rest_feet: FloatArray
+    stiffness: FloatArray
+    bone_vertices: IntArray
+    bone_feet: FloatArray
+    on_jaw: BoolArray
+    bone_stiffness: FloatArray
+    tissue: FloatArray
+
+    @property
+    def muscle_spring_count(self) -> int:
+        """Number of springs to muscles, partners not counted."""
+        return len(self.vertices)
+
+
+def build_springs(
+    skin: Skin,
+    muscles: MuscleSet,
+    attachment: SkinBones | None,
+    parameters: SpringParameters,
+) -> SkinSprings:
+    """Hang a skin on muscles and bones.
+
+    Parameters
+    ----------
+    skin : Skin
+    muscles : MuscleSet
+        Fitted under it.
+    attachment : SkinBones or None
+        Which bone lies under each vertex, and where.
+    parameters : SpringParameters
+
+    Raises
+    ------
+    ParameterError
+        If the skin is to be held by bones and nothing is known of any.
+    """
+    p, mesh = parameters, skin.mesh
+    if p.holding == "bone" and attachment is None:
+        raise ParameterError("attachment: missing; these parameters hold the skin by bones")
+    positions = mesh.positions
+    pairs = edges(mesh.faces)
+    length = np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
+    k = edge_stiffness(mesh, pairs, least_length=p.least_length, least=p.least_stiffness)
+    unit = float(np.median(k))
+    soft = (skin.lids[pairs] > 0.0).all(axis=1)
+    k = np.where(soft, p.lid_softness * k, k)
+    counted = _counted(skin, p) * unit
+    bound = _bind(skin, muscles, counted, p)
+    vertices, segments, numbers, feet, stiffness = bound
+    rest_feet = muscles.centres[segments] + np.einsum("nij,nj->ni", muscles.frames[segments], feet)
+    mirrored = 2.0 * positions[vertices] - rest_feet - muscles.centres[segments]
+    partners = np.einsum("nij,ni->nj", muscles.frames[segments], mirrored)
+    bone_vertices, bone_stiffness = _bones(attachment, counted, p)
+    bone_feet = np.zeros((0, 3)) if attachment is None else attachment.feet[bone_vertices]
+    on_jaw = np.zeros(0, bool)
+    if attachment is not None:
+        on_jaw = attachment.bones[bone_vertices] == JAW
+    tissue = _tissue(skin, attachment, counted, p)
+    grips = np.bincount(vertices, p.grip * stiffness, len(positions))
+    both = 2 if p.mirrors else 1
+    reach = np.linalg.norm(positions[vertices] - rest_feet, axis=1)
+    bone_reach = np.linalg.norm(positions[bone_vertices] - bone_feet, axis=1)
+    fixed = (skin.mobility <= 0.0) | (skin.mass <= 1e-9)
+    network = SpringNetwork(
+        positions, pairs, (1.0 - p.pretension) * length, k,
+        knee_lengths=(1.0 + p.knee_strain) * length, stiffening=p.stiffening,
+        anchored=np.concatenate([np.tile(vertices, both), np.tile(bone_vertices, both)]),
+        anchor_lengths=np.concatenate([np.tile(reach, both), np.tile(bone_reach, both)]),
+        anchor_stiffness=np.concatenate([np.tile(stiffness, both), np.tile(bone_stiffness, both)]),
+        hold_stiffness=tissue + grips, fixed=fixed,
+        mass=np.zeros(0) if p.masses == "stiffness" else np.ones(len(positions)),
+    )  # fmt: skip
+    network = replace(network, load=-edge_forces(network, positions))
+    return SkinSprings(
+        skin, network, vertices, segments, numbers, feet, partners, rest_feet, stiffness,
+        bone_vertices, bone_feet, on_jaw, np.tile(bone_stiffness, both), tissue,
+    )  # fmt: skip
+
+
+def _counted(skin: Skin, p: SpringParameters) -> FloatArray:
+    """Return how much (n,) of the skin each vertex stands for, 1 for a plain one."""
+    if not p.by_area:
+        return np.ones(len(skin.positions))
+    return skin.mass / (_AREA * skin.scale**2)
+
+
+def _bind(
+    skin: Skin, muscles: MuscleSet, counted: FloatArray, p: SpringParameters
+) -> tuple[IntArray, IntArray, IntArray, FloatArray, FloatArray]:
+    """Return vertex, ellipsoid, muscle (a,), local foot (a, 3), stiffness (a,) of the springs."""
+    lips = np.sign(skin.mouth.side).astype(np.int8)
+    # The lining of the mouth follows the lips, it is bound to no muscle but at their margin.
+    open_skin = (~skin.hidden | (skin.mouth.distance < _LINING)) & (skin.lids < 1.0)
+    strength = counted * skin.mobility * open_skin
+    parts: list[tuple[IntArray, IntArray, IntArray, FloatArray, FloatArray]] = []
+    for number, muscle in enumerate(muscles.muscles):
+        found = bind_muscle(
+            muscles, number, positions=skin.positions, normals=skin.normals, lips=lips
+        )
+        share = np.full(len(found.vertices), p.muscle_stiffness * muscle.action.stiffness)
+        if p.fall_off:
+            beyond = (found.distances - _SKIN * skin.scale) / muscle.action.radius
+            share = share * smooth_step(1.0 - beyond)
+        share = share * strength[found.vertices]
+        kept = share > 0.0
+        numbers = np.full(int(kept.sum()), number, np.int32)
+        parts.append(
+            (found.vertices[kept], found.segments[kept], numbers, found.feet[kept], share[kept])
+        )
+    if not parts:
+        none = np.zeros(0, np.int32)
+        return none, none, none, np.zeros((0, 3)), np.zeros(0)
+    vertices, segments, numbers, feet, stiffness = (
+        np.concatenate(column) for column in zip(*parts, strict=True)
+    )
+    return vertices, segments, numbers, feet, stiffness
+
+
+def _bones(
+    attachment: SkinBones | None, counted: FloatArray, p: SpringParameters
+) -> tuple[IntArray, FloatArray]:
+    """Return the vertices (b,) that hang on bone and the stiffness (b,) of their springs."""
+    if p.holding != "bone" or attachment is None:
+        return np.zeros(0, np.int32), np.zeros(0)
+    vertices = np.flatnonzero(attachment.bones > 0).astype(np.int32)
+    on_jaw = attachment.bones[vertices] == JAW
+    plain = np.where(on_jaw, p.jaw_stiffness, p.bone_stiffness)
+    return vertices, plain * counted[vertices]
+
+
+def _tissue(
+    skin: Skin, attachment: SkinBones | None, counted: FloatArray, p: SpringParameters
+) -> FloatArray:
+    """Return the stiffness (n,) of what draws the skin home."""
+    if p.holding == "bone":
+        loose = np.ones(len(counted)) if attachment is None else attachment.bones == 0
+        return p.home * counted * loose
+    held = p.tissue * skin.passive + _STILL * (1.0 - skin.mobility) ** 2
+    return p.muscle_stiffness * held * counted
