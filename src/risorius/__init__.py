@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from risorius.rig.face import Face as Face
     from risorius.rig.rig import MorphTarget as MorphTarget
     from risorius.rig.rig import Rig as Rig
+    from risorius.springmuscle.face import SpringFace as SpringFace
+    from risorius.springmuscle.parameters import SpringParameters as SpringParameters
     from risorius.vectormuscle.face import VectorFace as VectorFace
     from risorius.vectormuscle.face import VectorParameters as VectorParameters
 
@@ -40,6 +42,8 @@ _HOME = {
     "Rig": "risorius.rig.rig",
     "RisoriusError": "risorius.errors",
     "RisoriusWarning": "risorius.errors",
+    "SpringFace": "risorius.springmuscle.face",
+    "SpringParameters": "risorius.springmuscle.parameters",
     "VectorFace": "risorius.vectormuscle.face",
     "VectorParameters": "risorius.vectormuscle.face",
     "bake": "risorius.rig.bake",
@@ -58,6 +62,8 @@ __all__ = [
     "Rig",
     "RisoriusError",
     "RisoriusWarning",
+    "SpringFace",
+    "SpringParameters",
     "VectorFace",
     "VectorParameters",
     "__version__",

@@ -11,6 +11,8 @@ import typer
 __all__ = [
     "AsJson",
     "Axes",
+    "Bones",
+    "BonesOption",
     "Debug",
     "FlipLandmarks",
     "FromHead",
@@ -27,6 +29,7 @@ __all__ = [
     "Profile",
     "ProfileOption",
     "Quiet",
+    "RecipeFile",
     "Shapes",
     "SkullFile",
     "SkullLandmarks",
@@ -47,7 +50,16 @@ class Method(StrEnum):
     """Methods that pose a face."""
 
     layered = "layered"
+    springs = "springs"
     vector = "vector"
+
+
+class Bones(StrEnum):
+    """Where spring muscles find skull and jaw."""
+
+    given = "given"
+    builtin = "builtin"
+    cut = "cut"
 
 
 class Profile(StrEnum):
@@ -191,13 +203,33 @@ MuscleMapFile = Annotated[
         show_default=False,
     ),
 ]
+RecipeFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--recipe",
+        metavar="FILE",
+        help="Outlines of spring muscles, instead of those that ship with risorius.",
+        rich_help_panel=_METHOD,
+        show_default=False,
+    ),
+]
+BonesOption = Annotated[
+    Bones | None,
+    typer.Option(
+        "--bones",
+        help="Bones of spring muscles: the skull given with --skull, the built-in one, or cut from "
+        "the head's own mesh.  [default: given if there is a --skull, else builtin]",
+        rich_help_panel=_METHOD,
+        show_default=False,
+    ),
+]
 SkullFile = Annotated[
     Path | None,
     typer.Option(
         "--skull",
         metavar="FILE",
-        help="Skull of the layered face, instead of the built-in one: a mesh with the objects "
-        "cranium and mandible, or the cranium alone and --mandible.",
+        help="Skull of the layered face or of spring muscles, instead of the built-in one: a mesh "
+        "with the objects cranium and mandible, or the cranium alone and --mandible.",
         rich_help_panel=_METHOD,
         show_default=False,
     ),

@@ -43,7 +43,7 @@ __all__ = [
 
 _REPLACED = (
     "landmarks", "unit", "axes", "method", "profile", "presets", "vector_set", "muscle_map",
-    "skull", "mandible", "skull_landmarks",
+    "recipe", "bones", "skull", "mandible", "skull_landmarks",
 )  # fmt: skip
 _RIG_ENDINGS = (".glb", ".gltf", ".npz")
 
@@ -64,6 +64,8 @@ class Given:
     presets: Path | None = None
     vector_set: Path | None = None
     muscle_map: Path | None = None
+    recipe: Path | None = None
+    bones: str | None = None
     skull: Path | None = None
     mandible: Path | None = None
     skull_landmarks: Path | None = None

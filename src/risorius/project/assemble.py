@@ -21,6 +21,7 @@ from risorius.landmarks.landmark_set import LandmarkSpec
 from risorius.mesh.polygon_mesh import PolygonMesh
 from risorius.project.layered import layered_face
 from risorius.project.project import Project
+from risorius.project.springs import spring_face
 from risorius.rig.face import Face
 from risorius.vectormuscle.face import Profile, VectorFace, VectorParameters
 from risorius.vectormuscle.vector_set import VectorSet, default_vector_set, parse_vector_set
@@ -179,5 +180,9 @@ def _assets() -> Any:
 
 
 Builder = Callable[[Project, Head, Mechanics | None], Face]
-BUILDERS: dict[str, Builder] = {"layered": layered_face, "vector": _vector_face}
+BUILDERS: dict[str, Builder] = {
+    "layered": layered_face,
+    "springs": spring_face,
+    "vector": _vector_face,
+}
 """How each method of `METHODS` is bound to a head."""

@@ -22,10 +22,10 @@ SCHEMA = "risorius/project"
 VERSION = 2
 _LIMIT = 64 * MEGABYTE
 _PATHS = (
-    "head", "landmarks", "vector_set", "muscle_map", "presets", "skull", "mandible",
+    "head", "landmarks", "vector_set", "muscle_map", "recipe", "presets", "skull", "mandible",
     "skull_landmarks",
 )  # fmt: skip
-_TEXTS = ("unit", "axes", "method", "profile")
+_TEXTS = ("unit", "axes", "method", "profile", "bones")
 _OTHERS = ("parts", "flip_landmarks", "parameters", "shapes", "poses")
 
 Document = dict[str, Any]
@@ -153,6 +153,7 @@ def _parse(document: Document, path: Path) -> Project:
             vector_set=_path(fields, "vector_set", path),
             presets=_path(fields, "presets", path),
             muscle_map=_path(fields, "muscle_map", path),
+            recipe=_path(fields, "recipe", path),
             skull=_path(fields, "skull", path),
             mandible=_path(fields, "mandible", path),
             skull_landmarks=_path(fields, "skull_landmarks", path),
@@ -160,6 +161,7 @@ def _parse(document: Document, path: Path) -> Project:
             axes=fields.text("axes") if "axes" in fields else None,
             method=fields.text("method", default=project.method),
             profile=fields.text("profile", default=project.profile),
+            bones=fields.text("bones") if "bones" in fields else None,
             parts={kind: parts.text(kind) for kind in parts},
             parameters={name: _parameter(parameters, name) for name in parameters},
             flip_landmarks=flip,

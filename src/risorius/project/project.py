@@ -12,16 +12,19 @@ from risorius.controls.shape_sets import ALL_SHAPE_SETS, SHAPE_SETS
 from risorius.head.head import HeadOptions
 from risorius.head.part import PART_KINDS
 
-__all__ = ["BUILTIN", "INLINE", "METHODS", "PROFILES", "Project"]
+__all__ = ["BONES", "BUILTIN", "INLINE", "METHODS", "PROFILES", "Project"]
 
 BUILTIN = "builtin"
 """What stands for a path where the head that ships with risorius is meant."""
 
-METHODS = ("layered", "vector")
+METHODS = ("layered", "springs", "vector")
 """Methods that pose a face."""
 
-INLINE = ("landmarks", "vector_set", "muscle_map", "presets")
+INLINE = ("landmarks", "vector_set", "muscle_map", "recipe", "presets")
 """Recipes that may stand in the project file itself instead of in a file of their own."""
+
+BONES = ("given", "builtin", "cut")
+"""Where spring muscles find skull and jaw: files, the built-in skull, the head's own mesh."""
 
 PROFILES = ("improved", "faithful")
 """How closely a method follows its publication."""
@@ -50,8 +53,11 @@ class Project:
         One of `PROFILES`.
     parameters : mapping of str to value
         Parameters of the method that differ from its profile.
-    vector_set, muscle_map, presets : Path or None
-        Recipes; None for those that ship with risorius.
+    vector_set, muscle_map, recipe, presets : Path or None
+        Recipes of the methods (outlines of spring muscles: `recipe`) and poses; None for those that ship with risorius.
+    bones : str or None
+        Where spring muscles find their bones, one of `BONES`; None for the given skull, else the
+        built-in one.
     skull, mandible, skull_landmarks : Path or None
         A skull of one's own; the mandible where it has a file of its own.
     shapes : tuple of str
@@ -79,7 +85,9 @@ class Project:
     parameters: Mapping[str, float | str] = field(default_factory=dict[str, float | str])
     vector_set: Path | None = None
     muscle_map: Path | None = None
+    recipe: Path | None = None
     presets: Path | None = None
+    bones: str | None = None
     skull: Path | None = None
     mandible: Path | None = None
     skull_landmarks: Path | None = None
@@ -90,6 +98,8 @@ class Project:
     def __post_init__(self) -> None:
         one_of("method", self.method, METHODS)
         one_of("profile", self.profile, PROFILES)
+        if self.bones is not None:
+            one_of("bones", self.bones, BONES)
         for name in self.shapes:
             one_of("shapes", name, ALL_SHAPE_SETS)
         for kind in self.parts:

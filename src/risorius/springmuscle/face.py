@@ -11,21 +11,27 @@ from risorius._check import FloatArray, IntArray
 from risorius.anatomy.contact import Contact
 from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.skin import build_skin, mirror_partners
-from risorius.anatomy.skull import builtin_skull
+from risorius.anatomy.skull import Skull, builtin_skull
 from risorius.anatomy.skull_fit import MIRROR, fit_skull, hidden_skin
 from risorius.controls.control import Control, Pose, resolve_pose
 from risorius.controls.presets import mirrored
 from risorius.head.head import Head
 from risorius.solvers.leapfrog import Moved, settle
 from risorius.solvers.springs import SpringState
-from risorius.springmuscle.bones import SkinBones
+from risorius.springmuscle.bones import BoneWay, SkinBones, find_bones
 from risorius.springmuscle.contraction import Contraction
 from risorius.springmuscle.driving import Drive, Driver
+from risorius.springmuscle.fit import Ground, fit_muscles
+from risorius.springmuscle.fit_parameters import FitParameters
 from risorius.springmuscle.live import LiveFace
+from risorius.springmuscle.measure import FaceMeasure
 from risorius.springmuscle.muscle_set import MuscleSet
-from risorius.springmuscle.parameters import SpringParameters
+from risorius.springmuscle.parameters import Profile, SpringParameters
+from risorius.springmuscle.recipe import OutlineRecipe
+from risorius.springmuscle.recipe_file import default_recipe
 from risorius.springmuscle.relax import start_of
 from risorius.springmuscle.skin import SkinSprings, build_springs
+from risorius.springmuscle.surface import label_lips
 
 __all__ = ["SpringFace"]
 
@@ -59,6 +65,52 @@ class SpringFace:
     controls: tuple[Control, ...]
     parameters: SpringParameters
     notes: tuple[str, ...] = ()
+
+    @staticmethod
+    def build(
+        head: Head,
+        recipe: OutlineRecipe | None = None,
+        *,
+        bones: BoneWay = "builtin",
+        skull: Skull | None = None,
+        mechanics: Mechanics | None = None,
+        profile: Profile = "improved",
+        parameters: SpringParameters | None = None,
+    ) -> SpringFace:
+        """Fit the muscles of a recipe under the skin of a head and hang the skin on them.
+
+        Parameters
+        ----------
+        head : Head
+        recipe : OutlineRecipe, optional
+            The default outlines if left out.
+        bones : {"builtin", "cut", "given"}
+            Where skull and jaw come from: the built-in skull, the head's own mesh, or `skull`.
+        skull : Skull, optional
+            For `bones` ``"given"``.
+        mechanics : Mechanics, optional
+            Already built for this head.
+        profile : {"improved", "faithful"}
+        parameters : SpringParameters, optional
+            Those of the profile if left out.
+
+        Raises
+        ------
+        LandmarkError
+            If the head lacks landmarks of mouth, eyes and chin, or some that outlines need.
+        MeshError
+            If the lips are welded.
+        ParameterError
+            If a word is not one of its choices, or an outline cannot be laid on this head.
+        """
+        p = parameters or SpringParameters.of_profile(profile)
+        moving = mechanics or Mechanics.build(head)
+        fit = FitParameters.of_profile(profile)
+        ground = Ground.build(moving, find_bones(moving, bones, skull=skull), fit)
+        muscles = fit_muscles(recipe or default_recipe(), ground)
+        return SpringFace.of_muscles(
+            head, muscles, attachment=ground.skin_bones, mechanics=moving, parameters=p
+        )
 
     @staticmethod
     def of_muscles(
@@ -95,7 +147,8 @@ class SpringFace:
         hidden = hidden_skin(moving.lips, moving.margins)
         fitted = fit_skull(builtin_skull(), head, symmetric=partner is not None, hidden=hidden)
         skin = build_skin(moving, fitted, partner)
-        springs = build_springs(skin, muscles, attachment, p)
+        lips, _ = label_lips(moving.lips, FaceMeasure.of(head.landmarks))
+        springs = build_springs(skin, muscles, attachment, lips, p)
         driver = Driver(springs, Contraction(muscles), moving, p)
         contact = Contact.build(skin, moving) if p.contact else None
         controls = muscles.controls + moving.controls

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.skin import Skin
@@ -85,6 +86,7 @@ def build_springs(
     skin: Skin,
     muscles: MuscleSet,
     attachment: SkinBones | None,
+    lips: npt.NDArray[np.int8],
     parameters: SpringParameters,
 ) -> SkinSprings:
     """Hang a skin on muscles and bones.
@@ -96,6 +98,8 @@ def build_springs(
         Fitted under it.
     attachment : SkinBones or None
         Which bone lies under each vertex, and where.
+    lips : (n,) int8
+        1 on the upper lip, -1 on the lower, 0 elsewhere: a lip never hangs on the other's muscles.
     parameters : SpringParameters
 
     Raises
@@ -114,7 +118,7 @@ def build_springs(
     soft = (skin.lids[pairs] > 0.0).all(axis=1)
     k = np.where(soft, p.lid_softness * k, k)
     counted = _counted(skin, p) * unit
-    bound = _bind(skin, muscles, counted, p)
+    bound = _bind(skin, muscles, lips, counted * p.muscle_stiffness, fall_off=p.fall_off)
     vertices, segments, numbers, feet, stiffness = bound
     rest_feet = muscles.centres[segments] + np.einsum("nij,nj->ni", muscles.frames[segments], feet)
     mirrored = 2.0 * positions[vertices] - rest_feet - muscles.centres[segments]
@@ -154,20 +158,24 @@ def _counted(skin: Skin, p: SpringParameters) -> FloatArray:
 
 
 def _bind(
-    skin: Skin, muscles: MuscleSet, counted: FloatArray, p: SpringParameters
+    skin: Skin,
+    muscles: MuscleSet,
+    lips: npt.NDArray[np.int8],
+    plain: FloatArray,
+    *,
+    fall_off: bool,
 ) -> tuple[IntArray, IntArray, IntArray, FloatArray, FloatArray]:
     """Return vertex, ellipsoid, muscle (a,), local foot (a, 3), stiffness (a,) of the springs."""
-    lips = np.sign(skin.mouth.side).astype(np.int8)
     # The lining of the mouth follows the lips, it is bound to no muscle but at their margin.
     open_skin = (~skin.hidden | (skin.mouth.distance < _LINING)) & (skin.lids < 1.0)
-    strength = counted * skin.mobility * open_skin
+    strength = plain * skin.mobility * open_skin
     parts: list[tuple[IntArray, IntArray, IntArray, FloatArray, FloatArray]] = []
     for number, muscle in enumerate(muscles.muscles):
         found = bind_muscle(
             muscles, number, positions=skin.positions, normals=skin.normals, lips=lips
         )
-        share = np.full(len(found.vertices), p.muscle_stiffness * muscle.action.stiffness)
-        if p.fall_off:
+        share = np.full(len(found.vertices), muscle.action.stiffness)
+        if fall_off:
             beyond = (found.distances - _SKIN * skin.scale) / muscle.action.radius
             share = share * smooth_step(1.0 - beyond)
         share = share * strength[found.vertices]
