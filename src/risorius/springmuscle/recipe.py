@@ -32,10 +32,22 @@ class OutlinePoint:
         Names of landmarks.
     offset : tuple of float
         In widths, heights and widths of the face (`FaceMeasure.unit`), +X left, +Y up, +Z forward.
+    weights : tuple of float
+        How much each anchor counts; empty where all count alike.
     """
 
     anchors: tuple[str, ...]
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    weights: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.anchors:
+            raise ParameterError("outline point: has no landmark to hang on")
+        if self.weights and (len(self.weights) != len(self.anchors) or not min(self.weights) > 0.0):
+            raise ParameterError(
+                f"outline point {'+'.join(self.anchors)}: needs one weight above 0 per landmark, "
+                f"got {list(self.weights)}"
+            )
 
     def place(self, measure: FaceMeasure) -> FloatArray:
         """Return where the point lies (3,) on a face [mm].
@@ -51,13 +63,15 @@ class OutlinePoint:
                 f"landmarks: the outline needs {', '.join(missing)}; add it to the landmark file "
                 "or anchor the point elsewhere"
             )
-        middle = np.mean([measure.landmarks[name] for name in self.anchors], axis=0)
+        places = [measure.landmarks[name] for name in self.anchors]
+        middle = np.average(places, axis=0, weights=self.weights or None)
         return middle + np.array(self.offset) * measure.unit
 
     def mirrored(self) -> OutlinePoint:
         """Return the point on the other side of the face."""
         x, y, z = self.offset
-        return OutlinePoint(tuple(mirror_name(name) for name in self.anchors), (-x, y, z))
+        names = tuple(mirror_name(name) for name in self.anchors)
+        return OutlinePoint(names, (-x, y, z), self.weights)
 
 
 @dataclass(frozen=True)

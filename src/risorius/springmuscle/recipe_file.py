@@ -119,16 +119,23 @@ def _lists(record: Fields, key: str) -> list[list[Any]]:
 
 
 def _read_point(value: object, where: str) -> OutlinePoint:
-    """Return the point written as ``["2.4+2.2", x, y, z]``; the offset may be left out."""
+    """Return the point written as ``["2.4*3+2.2", x, y, z]``; weights and offset may be absent."""
     parts = cast("list[object]", value) if isinstance(value, list) else []
     if len(parts) not in (1, 4) or not isinstance(parts[0], str):
         raise FormatError(f'{where}: expected ["landmark+landmark", x, y, z]')
-    anchors = tuple(name.strip() for name in parts[0].split("+"))
-    unknown = [name for name in anchors if name not in feature_points()]
+    terms = [term.strip().partition("*") for term in parts[0].split("+")]
+    unknown = [name for name, _, _ in terms if name not in feature_points()]
     if unknown:
         raise FormatError(f"{where}: {', '.join(unknown)} is no landmark")
+    weights = tuple(
+        as_number(where, number, low=1e-6, high=1e6) if number else 1.0 for _, _, number in terms
+    )
     offset = [finite_number(number, where) for number in parts[1:]] or [0.0, 0.0, 0.0]
-    return OutlinePoint(anchors, (offset[0], offset[1], offset[2]))
+    return OutlinePoint(
+        tuple(name for name, _, _ in terms),
+        (offset[0], offset[1], offset[2]),
+        () if len(set(weights)) == 1 else weights,
+    )
 
 
 def _read_ring(record: Fields) -> Ring:
@@ -235,4 +242,7 @@ def _text(outline: MuscleOutline) -> str:
 
 
 def _point(point: OutlinePoint) -> list[Any]:
-    return ["+".join(point.anchors), *(round(value, 4) for value in point.offset)]
+    names = list(point.anchors)
+    if point.weights:
+        names = [f"{name}*{weight:g}" for name, weight in zip(names, point.weights)]
+    return ["+".join(names), *(round(value, 4) for value in point.offset)]
