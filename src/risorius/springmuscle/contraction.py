@@ -106,7 +106,7 @@ class Contraction:
         tables = self._tables
         contract_points(
             relaxed, goals, rest.shares, rest.fibre_starts, rest.fibre_muscle, rest.ring_muscles,
-            amounts, tables["slides"], tables["pivots"], np.empty(len(relaxed)), moved,
+            amounts, tables["fixed_points"], tables["pivots"], np.empty(len(relaxed)), moved,
         )  # fmt: skip
         # Closed rings: the last point is the first one.
         moved[tables["ring_last"]] = moved[tables["ring_first"]]
@@ -151,7 +151,7 @@ class Contraction:
         hosts = np.stack([hosts, hosts + 1], axis=1).astype(np.int32)
         gaps = rest.points[hosts] - rest.points[links.ends[:, 1]][:, None]
         return {
-            "slides": np.array([m.action.slide for m in rest.muscles]),
+            "fixed_points": np.array([m.action.fixed_point for m in rest.muscles]),
             "pivots": np.array(
                 [np.full(3, np.nan) if m.pivot is None else m.pivot for m in rest.muscles]
             ).reshape(-1, 3),

@@ -134,7 +134,7 @@ def _action(outline: MuscleOutline, ground: Ground, edge: float) -> MuscleAction
         max_contraction=settings.max_contraction,
         stiffness=settings.stiffness,
         radius=radius,
-        slide=settings.slide if ground.parameters.slide else 0.0,
+        fixed_point=settings.fixed_point if ground.parameters.loose_origins else 0.0,
     )
 
 

@@ -27,6 +27,8 @@ class FitParameters:
         Deepest that bone may lie below the skin it holds.
     rows, columns, passes : int
         Most rows and columns of a grid and rounds of refinement (finding S5).
+    part : float
+        Smallest part that a cut may leave of a cell, in mean extents of the triangles around.
     jump : float
         A new point whose projection goes farther than this keeps its place (finding S5).
     turn : float
@@ -44,8 +46,8 @@ class FitParameters:
         Whether sphincters aim in front of their plane (finding S4).
     lines : bool
         Whether sphincters may be drawn to a line and around the eyeball (finding S6).
-    slide : bool
-        Whether `MuscleAction.slide` counts; strain is even as published.
+    loose_origins : bool
+        Whether `MuscleAction.fixed_point` counts; the origin stays as published.
     merge : bool
         Whether ends that lie in other muscles are linked to them.
     yielding : float
@@ -61,6 +63,7 @@ class FitParameters:
     rows: int = 24
     columns: int = 9
     passes: int = 30
+    part: float = 0.5
     jump: float = 9.0
     turn: float = 50.0
     overlap: float = 1.1
@@ -69,7 +72,7 @@ class FitParameters:
     settle: int = 6
     ahead: bool = True
     lines: bool = True
-    slide: bool = True
+    loose_origins: bool = True
     merge: bool = True
     yielding: float = 0.2
 
@@ -95,12 +98,13 @@ class FitParameters:
             rows=32,
             columns=16,
             passes=20,
+            part=1.0,
             turn=90.0,
             segment=math.inf,
             breadth=math.inf,
             settle=0,
             ahead=False,
             lines=False,
-            slide=False,
+            loose_origins=False,
             yielding=1.0,
         )

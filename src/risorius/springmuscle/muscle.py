@@ -34,10 +34,10 @@ class MuscleAction:
         How strongly it holds the skin, in units of a plain muscle.
     radius : float
         Skin within this distance of its ellipsoids is bound to it [mm].
-    slide : float
-        Share of a fibre, at its insertion, that slides as one while the rest contracts; 0 as
-        published (strain is even). A muscle that ends in a loose aponeurosis, such as the
-        frontalis in the galea, lifts everything below its upper part.
+    fixed_point : float
+        Place along the fibre that stays, 0 the origin (as published), 1 the insertion. A muscle
+        that ends in a loose aponeurosis, such as the frontalis in the galea, draws both its ends
+        together.
     bulge : float
         Gain of height per strain: 2 as published.
     """
@@ -46,7 +46,7 @@ class MuscleAction:
     max_contraction: float = 1.0
     stiffness: float = 1.0
     radius: float = 8.0
-    slide: float = 0.0
+    fixed_point: float = 0.0
     bulge: float = 2.0
 
 

@@ -121,8 +121,8 @@ class OutlineSettings:
         Contraction at control 1.
     stiffness : float
         How strongly it holds the skin, in units of a plain muscle.
-    slide : float
-        See `MuscleAction.slide`.
+    fixed_point : float
+        Place along the fibre that stays; see `MuscleAction`.
     host : bool
         Whether ends of other muscles merge with it; off for a second action on the same ring.
     """
@@ -132,7 +132,7 @@ class OutlineSettings:
     radius: float | None = None
     max_contraction: float = 1.0
     stiffness: float = 1.0
-    slide: float = 0.0
+    fixed_point: float = 0.0
     host: bool = True
 
 

@@ -177,7 +177,7 @@ def _read_settings(record: Fields) -> OutlineSettings:
         radius=radius or None,
         max_contraction=_number(record, "max_contraction", 1.0, 0.0, _MOST_CONTRACTION),
         stiffness=_number(record, "stiffness", 1.0, 0.0, 1000.0),
-        slide=_number(record, "slide", 0.0, 0.0, 0.95),
+        fixed_point=_number(record, "fixed_point", 0.0, 0.0, 1.0),
         host=_flag(record, "host", True),
     )
 
@@ -229,7 +229,7 @@ def _text(outline: MuscleOutline) -> str:
         "radius": settings.radius,
         "max_contraction": settings.max_contraction,
         "stiffness": settings.stiffness,
-        "slide": settings.slide,
+        "fixed_point": settings.fixed_point,
         "host": settings.host,
     }
     plain = {key: value for key, value in head.items() if value not in (None, [], {})}

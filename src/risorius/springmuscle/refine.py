@@ -244,6 +244,7 @@ def _cut_of(work: _Work, r: int, c: int, at_far: bool) -> tuple[float | None, fl
         way = np.diff(corner, axis=axis).reshape(2, 3).mean(axis=0)
         length = float(np.linalg.norm(way))
         extent = float(np.ptp(triangles @ (way / max(length, 1e-12)), axis=1).mean())
+        extent *= work.parameters.part
         if length < 2.0 * extent or points.shape[axis] >= most or length == 0.0:
             result.append(None)
         else:

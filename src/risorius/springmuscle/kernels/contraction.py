@@ -15,11 +15,11 @@ LEAST = 0.01
 
 
 @njit(**FLAGS)
-def slide_along(points, first, last, contraction, slide, lengths, result):
-    """Slide points first..last along their own polyline towards the first one.
+def slide_along(points, first, last, contraction, fixed_point, lengths, result):
+    """Slide points first..last along their own polyline towards the one place that stays.
 
-    ``t~ = t - c min(t / (1 - slide), 1)`` with t the arc length; slide 0 is the published
-    ``(1 - c) t``. `lengths` is room for the arc lengths.
+    ``t~ = t0 + max(1 - c, 0.01) (t - t0)`` with t the arc length; t0 = 0, the origin, as published
+    (errata E1, E6). `lengths` is room for the arc lengths.
     """
     total = 0.0
     lengths[first] = 0.0
@@ -29,11 +29,10 @@ def slide_along(points, first, last, contraction, slide, lengths, result):
             square += (points[i, axis] - points[i - 1, axis]) ** 2
         total += math.sqrt(square)
         lengths[i] = total
-    taut = 1.0 - slide
-    pull = min(max(contraction, 0.0), (1.0 - LEAST) * taut)
+    pull = min(max(contraction, 0.0), 1.0 - LEAST)
     k = first
     for i in range(first, last + 1):
-        place = lengths[i] - pull * min(lengths[i] / taut, total)
+        place = lengths[i] - pull * (lengths[i] - fixed_point * total)
         while k < last - 1 and lengths[k + 1] < place:
             k += 1
         span = lengths[k + 1] - lengths[k]
@@ -68,7 +67,17 @@ def draw_towards(points, aims, shares, first, last, contraction, pivot, result):
 
 @njit(**FLAGS)
 def contract_points(
-    points, aims, shares, starts, fibre_muscle, rings, contractions, slides, pivots, room, result
+    points,
+    aims,
+    shares,
+    starts,
+    fibre_muscle,
+    rings,
+    contractions,
+    fixed_points,
+    pivots,
+    room,
+    result,
 ):
     """Contract every fibre; `result` (P, 3) receives the control points, `room` (P,) is scratch."""
     for f in range(len(starts) - 1):
@@ -76,7 +85,7 @@ def contract_points(
         if rings[m]:
             draw_towards(points, aims, shares, first, last, contractions[m], pivots[m], result)
         else:
-            slide_along(points, first, last, contractions[m], slides[m], room, result)
+            slide_along(points, first, last, contractions[m], fixed_points[m], room, result)
 
 
 @njit(**FLAGS)

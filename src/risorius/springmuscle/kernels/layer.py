@@ -40,11 +40,17 @@ def line_meets(x, y, z, dx, dy, dz, corners, t):
 
 
 @njit(**FLAGS)
-def nearest_meeting(x, y, z, dx, dy, dz, corners, normals, chosen, count, reach):
+def nearest_meeting(x, y, z, dx, dy, dz, corners, normals, middles, radii, chosen, count, reach):
     """Return signed distance and triangle of the meeting nearest to the point, nan and -1."""
     best, found = math.nan, -1
     for k in range(count):
         t = chosen[k]
+        mx, my, mz = middles[t, 0] - x, middles[t, 1] - y, middles[t, 2] - z
+        along = mx * dx + my * dy + mz * dz
+        aside = mx * mx + my * my + mz * mz - along * along
+        # Rounding must not lose a line through a corner.
+        if aside > radii[t] * radii[t] * 1.000001:
+            continue
         if normals[t, 0] * dx + normals[t, 1] * dy + normals[t, 2] * dz <= _FACING:
             continue
         distance = line_meets(x, y, z, dx, dy, dz, corners, t)
@@ -54,16 +60,36 @@ def nearest_meeting(x, y, z, dx, dy, dz, corners, normals, chosen, count, reach)
 
 
 @njit(**FLAGS)
-def gather(x, y, z, reach, middles, radii, chosen):
-    """Put the triangles within `reach` of a point into `chosen`; return how many there are."""
+def gather(x, y, z, nx, ny, nz, radius, tilt, reach, middles, radii, chosen):
+    """Put the triangles that lines from around a point can meet into `chosen`; return how many.
+
+    The lines start within `radius` of the point and lean against the unit vector n by at most
+    `tilt` (tangent of the angle).
+    """
     count = 0
     for t in range(len(middles)):
         dx, dy, dz = middles[t, 0] - x, middles[t, 1] - y, middles[t, 2] - z
-        far = reach + radii[t]
-        if dx * dx + dy * dy + dz * dz <= far * far:
+        along = abs(dx * nx + dy * ny + dz * nz)
+        size = radius + radii[t]
+        far = size + tilt * (along + size)
+        if along <= reach + size and dx * dx + dy * dy + dz * dz - along * along <= far * far:
             chosen[count] = t
             count += 1
     return count
+
+
+@njit(**FLAGS)
+def lean(normals, r, c, nx, ny, nz):
+    """Return the greatest tangent of the angle of a cell's normals against the unit vector n."""
+    most = 0.0
+    for a in range(2):
+        for b in range(2):
+            x, y, z = normals[r + a, c + b, 0], normals[r + a, c + b, 1], normals[r + a, c + b, 2]
+            along = x * nx + y * ny + z * nz
+            if along < 0.1:
+                return 10.0
+            most = max(most, math.sqrt(max(x * x + y * y + z * z - along * along, 0.0)) / along)
+    return most
 
 
 @njit(**FLAGS)
@@ -72,11 +98,11 @@ def cast_lines(points, directions, corners, normals, middles, radii, reach, dist
     chosen = np.empty(len(corners), np.int32)
     for i in range(len(points)):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
-        count = gather(x, y, z, reach, middles, radii, chosen)
+        dx, dy, dz = directions[i, 0], directions[i, 1], directions[i, 2]
+        count = gather(x, y, z, dx, dy, dz, 0.0, 0.0, reach, middles, radii, chosen)
         distances[i], hit[i] = nearest_meeting(
-            x, y, z, directions[i, 0], directions[i, 1], directions[i, 2], corners, normals,
-            chosen, count, reach,
-        )  # fmt: skip
+            x, y, z, dx, dy, dz, corners, normals, middles, radii, chosen, count, reach
+        )
 
 
 @njit(**FLAGS)
@@ -97,7 +123,10 @@ def measure_cells(
             if not dirty[r, c]:
                 continue
             x, y, z, radius, long, wide = cell_bounds(grid, r, c)
-            count = gather(x, y, z, reach + radius, middles, radii, chosen)
+            w[:] = 0.25
+            nx, ny, nz = unit_blend(grid_normals, r, c, w)
+            tilt = lean(grid_normals, r, c, nx, ny, nz)
+            count = gather(x, y, z, nx, ny, nz, radius, tilt, reach, middles, radii, chosen)
             rows = min(max(math.ceil(3.0 * long / edge) + 1, _LEAST_SAMPLES), _MOST_SAMPLES)
             cols = min(max(math.ceil(3.0 * wide / edge) + 1, _LEAST_SAMPLES), _MOST_SAMPLES)
             nearest[r, c], farthest[r, c] = math.inf, -math.inf
@@ -107,13 +136,10 @@ def measure_cells(
                     u, v = i / (rows - 1), j / (cols - 1)
                     w[0], w[1], w[2], w[3] = (1 - u) * (1 - v), (1 - u) * v, u * (1 - v), u * v
                     px, py, pz = blend(grid, r, c, w)
-                    nx, ny, nz = blend(grid_normals, r, c, w)
-                    size = math.sqrt(nx * nx + ny * ny + nz * nz)
-                    if size == 0.0:
-                        continue
+                    nx, ny, nz = unit_blend(grid_normals, r, c, w)
                     depth, found = nearest_meeting(
-                        px, py, pz, nx / size, ny / size, nz / size, corners, normals, chosen,
-                        count, reach,
+                        px, py, pz, nx, ny, nz, corners, normals, middles, radii, chosen, count,
+                        reach,
                     )  # fmt: skip
                     if found < 0:
                         continue
@@ -139,6 +165,16 @@ def blend(values, r, c, w):
     y += w[2] * values[r + 1, c, 1] + w[3] * values[r + 1, c + 1, 1]
     z = w[0] * values[r, c, 2] + w[1] * values[r, c + 1, 2]
     z += w[2] * values[r + 1, c, 2] + w[3] * values[r + 1, c + 1, 2]
+    return x, y, z
+
+
+@njit(**FLAGS)
+def unit_blend(values, r, c, w):
+    """Return `blend` at length 1, zero where it is zero."""
+    x, y, z = blend(values, r, c, w)
+    size = math.sqrt(x * x + y * y + z * z)
+    if size > 0.0:
+        x, y, z = x / size, y / size, z / size
     return x, y, z
 
 
