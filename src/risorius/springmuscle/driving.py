@@ -175,6 +175,10 @@ class Driver:
         limits = np.array([m.action.max_contraction for m in self.contraction.muscles.muscles])
         share = np.minimum(amounts / np.maximum(limits, 1e-9), 1.0)
         activity = (p.resting + (1.0 - p.resting) * share)[springs.muscles]
+        if p.riding:
+            ride = self._ride(0.5 * (moved[0] + moved[1]), share[springs.muscles])
+            anchors = (anchors[0] + ride, anchors[1] + ride)
+            moved = (moved[0] + ride, moved[1] + ride)
         stiffness = springs.stiffness * activity
         bones = self._bone_anchors(jaw)
         both = 2 if p.mirrors else 1
@@ -195,6 +199,23 @@ class Driver:
             hold_targets=target, hold_stiffness=hold, **self._rest_shape(reference, jaw),
         )  # fmt: skip
         return Drive(control, reference, *moved, activity, contracted)
+
+    def _ride(self, middle: FloatArray, share: FloatArray) -> FloatArray:
+        """Return how far (a, 3) each muscle spring is taken along by what others move [mm].
+
+        Parameters
+        ----------
+        middle : (a, 3) float64
+            Displacement between each foot and its partner [mm].
+        share : (a,) float64
+            Control of each spring's muscle, 0 to 1.
+        """
+        springs, n = self.springs, len(self.springs.skin.positions)
+        own = (springs.shares * (share > 0.0))[:, None] * middle
+        total = np.stack(
+            [np.bincount(springs.vertices, own[:, axis], n) for axis in range(3)], axis=1
+        )
+        return self.parameters.riding * (total[springs.vertices] - own)
 
     def _bone_anchors(self, jaw: JawPose) -> tuple[FloatArray, FloatArray]:
         """Return the feet (b, 3) on bones and their mirrored partners (b, 3) [mm]."""

@@ -51,6 +51,9 @@ class SpringParameters:
     resting : float
         What a muscle at rest keeps of its stiffness: at 1 relaxed muscles hold the skin against
         those that act (finding S3).
+    riding : float
+        How far a muscle is taken along where others move its skin, of their motion. Without it
+        muscles that act on the same skin average instead of adding.
     fall_off : bool
         Whether muscle springs fade towards the radius of influence.
     by_area : bool
@@ -63,7 +66,8 @@ class SpringParameters:
     home : float
         Of position springs that draw skin home where it hangs on nothing else.
     tissue : float
-        Scale of the resistance of tissue.
+        Of the resistance of tissue 8 mm thick is this times its passive share
+        (`anatomy.skin.Skin.passive`).
     carried : bool
         Whether the shape that springs are at rest in is carried along by the jaw as skin is
         known to be; else only bones and muscles move and drag the skin.
@@ -90,6 +94,7 @@ class SpringParameters:
     mirrors: bool = True
     grip: float = 0.0
     resting: float = 1.0
+    riding: float = 0.0
     fall_off: bool = False
     by_area: bool = False
     holding: Holding = "bone"
@@ -110,7 +115,7 @@ class SpringParameters:
             raise ParameterError(f"pretension: {pretension:g} must be below 1, edges keep a length")
         for name in (
             "knee_strain", "stiffening", "least_length", "least_stiffness", "lid_softness",
-            "muscle_stiffness", "grip", "bone_stiffness", "jaw_stiffness", "home", "tissue",
+            "muscle_stiffness", "grip", "riding", "bone_stiffness", "jaw_stiffness", "home", "tissue",
         ):  # fmt: skip
             as_number(name, getattr(self, name), low=0.0)
         as_number("resting", self.resting, low=0.0, high=1.0)
@@ -137,13 +142,14 @@ PROFILES: dict[str, SpringParameters] = {
         muscle_stiffness=0.15,
         grip=0.5,
         resting=0.05,
+        riding=1.0,
         fall_off=True,
         by_area=True,
         holding="tissue",
         bone_stiffness=0.0,
         jaw_stiffness=0.0,
         home=0.0,
-        tissue=1.0,
+        tissue=0.15,
         carried=True,
         masses="stiffness",
         even=True,

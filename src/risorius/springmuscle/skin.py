@@ -51,6 +51,8 @@ class SkinSprings:
         The feet in space [mm].
     stiffness : (a,) float64
         Of each muscle spring while its muscle is active.
+    shares : (a,) float64
+        How fully each muscle spring takes part, 1 close to the muscle.
     bone_vertices : (b,) int32
     bone_feet : (b, 3) float64
         [mm].
@@ -70,6 +72,7 @@ class SkinSprings:
     partners: FloatArray
     rest_feet: FloatArray
     stiffness: FloatArray
+    shares: FloatArray
     bone_vertices: IntArray
     bone_feet: FloatArray
     on_jaw: BoolArray
@@ -119,7 +122,7 @@ def build_springs(
     k = np.where(soft, p.lid_softness * k, k)
     counted = _counted(skin, p) * unit
     bound = _bind(skin, muscles, lips, counted * p.muscle_stiffness, fall_off=p.fall_off)
-    vertices, segments, numbers, feet, stiffness = bound
+    vertices, segments, numbers, feet, stiffness, shares = bound
     rest_feet = muscles.centres[segments] + np.einsum("nij,nj->ni", muscles.frames[segments], feet)
     mirrored = 2.0 * positions[vertices] - rest_feet - muscles.centres[segments]
     partners = np.einsum("nij,ni->nj", muscles.frames[segments], mirrored)
@@ -145,7 +148,7 @@ def build_springs(
     )  # fmt: skip
     network = replace(network, load=-edge_forces(network, positions))
     return SkinSprings(
-        skin, network, vertices, segments, numbers, feet, partners, rest_feet, stiffness,
+        skin, network, vertices, segments, numbers, feet, partners, rest_feet, stiffness, shares,
         bone_vertices, bone_feet, on_jaw, np.tile(bone_stiffness, both), tissue,
     )  # fmt: skip
 
@@ -164,33 +167,33 @@ def _bind(
     plain: FloatArray,
     *,
     fall_off: bool,
-) -> tuple[IntArray, IntArray, IntArray, FloatArray, FloatArray]:
-    """Return vertex, ellipsoid, muscle (a,), local foot (a, 3), stiffness (a,) of the springs."""
+) -> tuple[IntArray, IntArray, IntArray, FloatArray, FloatArray, FloatArray]:
+    """Return vertex, ellipsoid, muscle (a,), foot (a, 3), stiffness and share (a,) of springs."""
     # The lining of the mouth follows the lips, it is bound to no muscle but at their margin.
     open_skin = (~skin.hidden | (skin.mouth.distance < _LINING)) & (skin.lids < 1.0)
     strength = plain * skin.mobility * open_skin
-    parts: list[tuple[IntArray, IntArray, IntArray, FloatArray, FloatArray]] = []
+    parts: list[tuple[IntArray, IntArray, IntArray, FloatArray, FloatArray, FloatArray]] = []
     for number, muscle in enumerate(muscles.muscles):
         found = bind_muscle(
             muscles, number, positions=skin.positions, normals=skin.normals, lips=lips
         )
-        share = np.full(len(found.vertices), muscle.action.stiffness)
+        share = np.ones(len(found.vertices))
         if fall_off:
             beyond = (found.distances - _SKIN * skin.scale) / muscle.action.radius
-            share = share * smooth_step(1.0 - beyond)
-        share = share * strength[found.vertices]
-        kept = share > 0.0
+            share = smooth_step(1.0 - beyond)
+        stiffness = muscle.action.stiffness * share * strength[found.vertices]
+        kept = stiffness > 0.0
         numbers = np.full(int(kept.sum()), number, np.int32)
-        parts.append(
-            (found.vertices[kept], found.segments[kept], numbers, found.feet[kept], share[kept])
-        )
+        columns = (found.vertices, found.segments, found.feet, stiffness, share)
+        vertices, segments, feet, stiffness, share = (column[kept] for column in columns)
+        parts.append((vertices, segments, numbers, feet, stiffness, share))
     if not parts:
         none = np.zeros(0, np.int32)
-        return none, none, none, np.zeros((0, 3)), np.zeros(0)
-    vertices, segments, numbers, feet, stiffness = (
+        return none, none, none, np.zeros((0, 3)), np.zeros(0), np.zeros(0)
+    vertices, segments, numbers, feet, stiffness, shares = (
         np.concatenate(column) for column in zip(*parts, strict=True)
     )
-    return vertices, segments, numbers, feet, stiffness
+    return vertices, segments, numbers, feet, stiffness, shares
 
 
 def _bones(
@@ -212,5 +215,5 @@ def _tissue(
     if p.holding == "bone":
         loose = np.ones(len(counted)) if attachment is None else attachment.bones == 0
         return p.home * counted * loose
-    held = p.tissue * skin.passive + _STILL * (1.0 - skin.mobility) ** 2
-    return p.muscle_stiffness * held * counted
+    still = _STILL * p.muscle_stiffness * (1.0 - skin.mobility) ** 2
+    return (p.tissue * skin.passive + still) * counted
