@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -95,6 +96,20 @@ class _Work:
     passes: int = 0
     stopped: Literal["fits", "small", "stagnation", "limit"] = "limit"
     worst: list[float] = field(default_factory=list[float])
+    best: tuple[float, Any] = (-1.0, None)
+
+    def remember(self) -> None:
+        """Keep the grid if more of its samples lie inside than ever before."""
+        counts = self.cells.counts
+        inside = float(counts[..., 2].sum()) / max(float(counts[..., 1].sum()), 1.0)
+        if inside > self.best[0]:
+            state = self.points.copy(), self.normals.copy(), self.rows.copy(), deepcopy(self.cells)
+            self.best = inside, state
+
+    def recall(self) -> None:
+        """Go back to the best grid."""
+        if self.best[1] is not None:
+            self.points, self.normals, self.rows, self.cells = self.best[1]
 
     def renew_normals(self) -> None:
         before = self.normals
@@ -192,6 +207,7 @@ def _divide_worst(work: _Work) -> bool:
     work.passes += 1
     work.renew_normals()
     low, high = work.measure()
+    work.remember()
     near, far = _errors(work, low, high)
     worst = np.maximum(near, far)
     worst[work.cells.final | (work.cells.counts[..., 1] == 0)] = 0.0
@@ -212,6 +228,7 @@ def _divide_worst(work: _Work) -> bool:
         history[:-_PATIENCE]
     ):
         work.stopped = "stagnation"
+        work.recall()
         return False
     u, v = cut
     if u is not None:
