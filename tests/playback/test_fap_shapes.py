@@ -46,7 +46,7 @@ def test_parameters_with_one_direction_have_one_shape(solved: FapShapes) -> None
 def test_what_no_muscle_moves_is_left_out_with_what_it_reaches(solved: FapShapes) -> None:
     assert "fap_65" not in solved.poses()
     assert solved.left_out["fap_65"] == "the face makes 0 of 100 units"
-    assert "turns the whole head" in solved.left_out["fap_48"]
+    assert "turn the whole head" in solved.left_out["fap_48"]
 
 
 def test_left_and_right_parameters_are_solved_as_mirror_images(solved: FapShapes) -> None:

@@ -7,7 +7,17 @@ from typing import Annotated, Any, cast
 
 import typer
 
-from risorius.cli.options import AsJson, Debug, FlipLandmarks, LandmarkFile, Presets, Quiet, as_size
+from risorius.cli.options import (
+    AsJson,
+    Debug,
+    FlipLandmarks,
+    LandmarkFile,
+    MethodOption,
+    Presets,
+    ProfileOption,
+    Quiet,
+    as_size,
+)
 from risorius.cli.talk import talking
 
 __all__ = ["play"]
@@ -37,8 +47,8 @@ def play(
             "--output",
             "-o",
             metavar="OUT",
-            help="What to make: .glb (the rig with the motion as animation), .mp4 (needs ffmpeg), "
-            "or a name without ending for a folder of PNG frames.",
+            help="What to make: .glb or .usd* (the rig with the motion as animation), .mp4 (needs "
+            "ffmpeg), or a name without ending for a folder of PNG frames.",
             show_default=False,
         ),
     ],
@@ -51,6 +61,14 @@ def play(
     easing: Annotated[
         str, typer.Option(metavar="WORD", help="Between frames: linear, smooth or hold.")
     ] = "linear",
+    live: Annotated[
+        bool,
+        typer.Option(
+            "--live",
+            help="Let the muscles of a head or project move in every frame, with the physics of "
+            "its method, instead of a baked rig.",
+        ),
+    ] = False,
     view: Annotated[
         str, typer.Option(metavar="VIEW", help="View of pictures, such as three-quarter.")
     ] = "front",
@@ -60,6 +78,8 @@ def play(
     metres: Annotated[
         bool, typer.Option("--metres", help="Turn a GLB to metres, +Y up and +Z forward.")
     ] = False,
+    method: MethodOption = None,
+    profile: ProfileOption = None,
     presets: Presets = None,
     landmarks: LandmarkFile = None,
     flip_landmarks: FlipLandmarks = False,
@@ -71,7 +91,8 @@ def play(
 
     Names that the rig has are weights of its shapes. MPEG-4 parameters are fitted at the feature
     points, so a rig needs no shapes for them, only landmarks. Shapes that the rig lacks are made of
-    its muscles where the presets know how.
+    its muscles where the presets know how. Turns of the head (fap_48 to fap_50, head_pitch,
+    head_yaw, head_roll) turn it as a whole.
 
     Example:  risorius play head.glb joy.fap -o joy.glb
     """
@@ -81,7 +102,13 @@ def play(
         from risorius.playback.pictures import Film
         from risorius.playback.resampling import resampled
 
-        given = Given(landmarks=landmarks, flip_landmarks=flip_landmarks, presets=presets)
+        given = Given(
+            landmarks=landmarks,
+            flip_landmarks=flip_landmarks,
+            presets=presets,
+            method=method.value if method else None,
+            profile=profile.value if profile else None,
+        )
         pixels = as_size(size)
         player = open_player(
             rig,
@@ -92,6 +119,7 @@ def play(
             sampling=lambda found: resampled(
                 found, rate=rate, speed=speed, loops=loops, easing=cast(Any, easing)
             ),
+            live=live,
         )
         film = Film(view, pixels, player.stream.rate)
         write_motion(player, Path(output), film, talk, metres=metres)

@@ -25,18 +25,21 @@ from risorius.io.atomic import atomic_write
 from risorius.io.finite import require_finite
 from risorius.io.looks import look_of
 from risorius.io.rig_json import rig_to_json
+from risorius.io.track import WeightTrack, show_of_shapes
 from risorius.io.usd_mesh import PartMesh, PartShape, part_meshes
+from risorius.io.usd_track import JOINT, add_track
 from risorius.rig.rig import Rig
 
 __all__ = ["write_usd"]
 
 _ROOT = "/Head"
-_FRAMES_PER_SHAPE = 24.0
 _MILLIMETRES_PER_METRE = 1000.0
 _EPOCH = 400_000_000  # a day in 1982: archives keep the time of their files, ours shall not
 
 
-def write_usd(rig: Rig, path: str | Path, *, animation: bool = False) -> None:
+def write_usd(
+    rig: Rig, path: str | Path, *, animation: bool = False, track: WeightTrack | None = None
+) -> None:
     """Write a rig as ``.usdc``, ``.usda``, ``.usdz`` or ``.usd``.
 
     Parameters
@@ -45,6 +48,9 @@ def write_usd(rig: Rig, path: str | Path, *, animation: bool = False) -> None:
     path : path
     animation : bool
         Add an animation that shows one shape after the other, a second each.
+    track : WeightTrack, optional
+        Add an animation that plays this instead, one time code for each of its moments. Where it
+        turns the head, the joint stands at the track's pivot and turns there.
 
     Raises
     ------
@@ -52,6 +58,8 @@ def write_usd(rig: Rig, path: str | Path, *, animation: bool = False) -> None:
         If the extra ``usd`` is not installed.
     FormatError
         If the rig has no polygons or the file cannot be written.
+    ShapeError
+        If the track was made for another rig.
 
     Notes
     -----
@@ -60,11 +68,15 @@ def write_usd(rig: Rig, path: str | Path, *, animation: bool = False) -> None:
     """
     pxr = _library()
     path = Path(path)
+    if track is not None:
+        track.require_fits(len(rig.targets))
     parts = part_meshes(rig)
     require_finite(rig.mesh.positions, f"{path}: the neutral")
     if not parts:
         raise FormatError(f"{path}: USD needs polygons, the rig has only vertices")
-    stage = _stage(rig, parts, animation=animation)
+    if track is None and animation and rig.targets:
+        track = show_of_shapes(len(rig.targets))
+    stage = _stage(rig, parts, track)
     with atomic_write(path) as temporary, tempfile.TemporaryDirectory() as folder:
         packed = path.suffix.lower() == ".usdz"
         file = Path(folder) / "head.usdc" if packed else temporary
@@ -90,7 +102,7 @@ def _library() -> Any:
     return import_module("pxr")
 
 
-def _stage(rig: Rig, parts: list[PartMesh], *, animation: bool) -> Any:
+def _stage(rig: Rig, parts: list[PartMesh], track: WeightTrack | None) -> Any:
     """Return a stage in memory: a skeleton of one joint that carries the blend shapes."""
     pxr = _library()
     stage = pxr.Usd.Stage.CreateInMemory()
@@ -107,16 +119,18 @@ def _stage(rig: Rig, parts: list[PartMesh], *, animation: bool) -> Any:
         matrix[:3, :3] = upright.T  # USD multiplies rows from the left
         root.AddTransformOp().Set(pxr.Gf.Matrix4d(matrix.tolist()))
     skeleton = pxr.UsdSkel.Skeleton.Define(stage, f"{_ROOT}/Skeleton")
-    skeleton.CreateJointsAttr(["head"])
-    rest = pxr.Vt.Matrix4dArray(1, pxr.Gf.Matrix4d(1.0))
+    skeleton.CreateJointsAttr([JOINT])
+    place = pxr.Gf.Matrix4d(1.0)
+    if track is not None and track.turns is not None:
+        place.SetTranslate(pxr.Gf.Vec3d(track.turns.pivot.tolist()))
+    rest = pxr.Vt.Matrix4dArray(1, place)
     skeleton.CreateBindTransformsAttr(rest)
     skeleton.CreateRestTransformsAttr(rest)
     animator = pxr.UsdSkel.Animation.Define(stage, f"{_ROOT}/Animation")
-    names = pxr.Vt.TokenArray(list(rig.names))
-    animator.CreateBlendShapesAttr(names)
-    weights = animator.CreateBlendShapeWeightsAttr(pxr.Vt.FloatArray(len(rig.targets)))
-    if animation and rig.targets:
-        _animate(stage, weights, len(rig.targets))
+    animator.CreateBlendShapesAttr(pxr.Vt.TokenArray(list(rig.names)))
+    animator.CreateBlendShapeWeightsAttr(pxr.Vt.FloatArray(len(rig.targets)))
+    if track is not None:
+        add_track(pxr, stage, animator, track)
     pxr.UsdSkel.BindingAPI.Apply(skeleton.GetPrim()).CreateAnimationSourceRel().AddTarget(
         animator.GetPath()
     )
@@ -132,20 +146,6 @@ def _up(frame: Frame) -> tuple[str, FloatArray | None]:
         if float(frame.rotation[1] @ np.array(axis)) > 0.8:
             return name, None
     return "Y", frame.rotation
-
-
-def _animate(stage: Any, weights: Any, count: int) -> None:
-    pxr = _library()
-    stage.SetTimeCodesPerSecond(_FRAMES_PER_SHAPE)
-    stage.SetFramesPerSecond(_FRAMES_PER_SHAPE)
-    stage.SetStartTimeCode(0.0)
-    stage.SetEndTimeCode(count * _FRAMES_PER_SHAPE)
-    for index in range(count):
-        peak = np.zeros(count, np.float32)
-        weights.Set(pxr.Vt.FloatArray.FromNumpy(peak), index * _FRAMES_PER_SHAPE)
-        peak[index] = 1.0
-        weights.Set(pxr.Vt.FloatArray.FromNumpy(peak), (index + 0.5) * _FRAMES_PER_SHAPE)
-    weights.Set(pxr.Vt.FloatArray(count), count * _FRAMES_PER_SHAPE)
 
 
 def _add_part(stage: Any, part: PartMesh, name: str, skeleton: Any) -> None:

@@ -13,7 +13,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from risorius._check import FloatArray, one_of
-from risorius.controls.fap import fap_name, fap_number, faps
+from risorius.controls.fap import fap_name, fap_number
+from risorius.controls.head_turn import (
+    HEAD_TURN_FAPS,
+    HEAD_TURNS,
+    head_turn_of,
+    parameters_of_turn,
+)
 from risorius.controls.stream import Stream, StreamFrame
 from risorius.errors import ParameterError
 from risorius.playback.bounded_fit import fit_bounded
@@ -74,8 +80,8 @@ def converted(stream: Stream, weights: RigWeights, *, to: str) -> tuple[Stream, 
     weights : RigWeights
         Of the rig that both sets are compared on.
     to : str
-        One of `TARGET_SETS`. Turns of the head (``fap_48`` .. ``fap_50``) are passed on to
-        ``fap`` as they are.
+        One of `TARGET_SETS`. Turns of the head are passed on: to ``fap`` as ``fap_48`` ..
+        ``fap_50``, to every other set as ``head_pitch``, ``head_yaw`` and ``head_roll`` [deg].
 
     Returns
     -------
@@ -92,12 +98,17 @@ def converted(stream: Stream, weights: RigWeights, *, to: str) -> tuple[Stream, 
     one_of("to", to, TARGET_SETS)
     error = ConversionError()
     change = _ToFap(weights) if to == "fap" else _ToTargets(weights.rig, to)
+    parameters = tuple(parameter for parameter, _ in HEAD_TURN_FAPS.values())
+    turning = set(stream.names) & {*HEAD_TURNS, *parameters}
+    turns = (parameters if to == "fap" else HEAD_TURNS) if turning else ()
 
     def frames() -> Iterator[StreamFrame]:
         error.__init__()
         for frame in stream:
             row = weights.of(frame.values)
-            values, square = change.of(row, frame.values)
+            values, square = change.of(row)
+            if turns:
+                values |= _turn(frame.values, to)
             asked = {name: value for name, value in frame.values.items() if fap_number(name)}
             differences: dict[str, float] = {}
             if asked:
@@ -106,7 +117,12 @@ def converted(stream: Stream, weights: RigWeights, *, to: str) -> tuple[Stream, 
             error.add(square, differences)
             yield StreamFrame(frame.time, values)
 
-    return replace(stream, names=change.names, open=frames), error
+    return replace(stream, names=(*change.names, *turns), open=frames), error
+
+
+def _turn(values: Mapping[str, float], to: str) -> dict[str, float]:
+    turn = head_turn_of(values)
+    return parameters_of_turn(turn) if to == "fap" else dict(zip(HEAD_TURNS, turn, strict=True))
 
 
 class _ToFap:
@@ -114,13 +130,10 @@ class _ToFap:
 
     def __init__(self, weights: RigWeights) -> None:
         self._fit = weights.fit
-        turns = [fap_name(fap.number) for fap in faps().values() if fap.turns_head]
-        self.names = (*(fap_name(n) for n in self._fit.reading.numbers), *turns)
-        self._turns = turns
+        self.names = tuple(fap_name(n) for n in self._fit.reading.numbers)
 
-    def of(self, row: FloatArray, asked: Mapping[str, float]) -> tuple[dict[str, float], float]:
-        passed = {name: asked[name] for name in self._turns if name in asked}
-        return {**self._fit.values(row), **passed}, 0.0
+    def of(self, row: FloatArray) -> tuple[dict[str, float], float]:
+        return self._fit.values(row), 0.0
 
 
 class _ToTargets:
@@ -141,7 +154,7 @@ class _ToTargets:
         self._own = own + (_EFFORT * np.trace(own) / len(own) + 1e-12) * np.eye(len(own))
         self._still = own.diagonal() <= 0.0
 
-    def of(self, row: FloatArray, asked: Mapping[str, float]) -> tuple[dict[str, float], float]:
+    def of(self, row: FloatArray) -> tuple[dict[str, float], float]:
         if not row[self._others].any():
             return dict(zip(self.names, row[self._chosen].tolist())), 0.0
         count = len(self._chosen)

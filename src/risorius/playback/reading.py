@@ -31,7 +31,7 @@ _FEWEST = 12  # vertices by which an eye's turn can be told
 _WHY_NOT = {
     "grow": "pupils are painted, not moved",
     "curl": "no control rolls the tongue",
-    "head": "it turns the whole head, which is no morph target",
+    "head": "no morph target; players turn the whole head as one",
 }
 
 

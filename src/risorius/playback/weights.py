@@ -10,6 +10,7 @@ import numpy as np
 from risorius._check import FloatArray
 from risorius.controls.control import Pose
 from risorius.controls.fap import fap_number, faps
+from risorius.controls.head_turn import HEAD_TURNS
 from risorius.controls.presets import PresetBook, default_presets
 from risorius.controls.standard import device_controls
 from risorius.controls.standard_sets import STANDARD_SETS
@@ -19,14 +20,18 @@ from risorius.rig.rig import Rig
 
 __all__ = ["RigWeights"]
 
+# Columns of Live Link Face that are angles.
+_ANGLES = ("Head", "LeftEye", "RightEye")
+_TURNS = ("Yaw", "Pitch", "Roll")
+
 
 class RigWeights:
     """Turns values of any standard into weights of a rig.
 
     A name that is a target is its weight. ``fap_*`` counts units of the face and is fitted at the
     feature points. A shape that the rig lacks and the presets know is made of the rig's singles,
-    muscle by muscle. Correctives of pairs get the product of their shapes' weights. What remains is
-    remembered in `unmatched`.
+    muscle by muscle. Correctives of pairs get the product of their shapes' weights. Turns of the
+    head are no weights and are left to the player. What remains is remembered in `unmatched`.
 
     Parameters
     ----------
@@ -78,7 +83,7 @@ class RigWeights:
             self._remember(parameters)
         made = np.zeros_like(result)
         for name, value in values.items():
-            if name in parameters:
+            if name in parameters or name in HEAD_TURNS:
                 continue
             if name in self._column:
                 result[self._column[name]] += value
@@ -89,7 +94,7 @@ class RigWeights:
             if column is not None:
                 made += value * column
             elif value:
-                self.unmatched.setdefault(name, "the rig has no such target and no muscles for it")
+                self.unmatched.setdefault(name, _reason(name))
         if made.any():
             result += np.clip(made, 0.0, 1.0)
         for row, first, second in self._pairs:
@@ -101,7 +106,9 @@ class RigWeights:
     def _remember(self, parameters: Mapping[str, float]) -> None:
         for name, value in parameters.items():
             number = fap_number(name)
-            if value and number is not None and number in self.fit.reading.left_out:
+            if not value or number is None or faps()[number].turns_head:
+                continue
+            if number in self.fit.reading.left_out:
                 reason = self.fit.reading.left_out[number]
                 self.unmatched.setdefault(name, f"{faps()[number].name}: {reason}")
 
@@ -110,6 +117,8 @@ class RigWeights:
         pose = self._preset(name)
         if pose is None:
             return None
+        if self.rig.controls:
+            pose = self._presets.fit(pose, self.rig.controls).pose
         column = np.zeros(len(self.rig.targets))
         ranges = {control.name: control for control in (*device_controls(), *self.rig.controls)}
         for control, value in pose.items():
@@ -130,3 +139,12 @@ class RigWeights:
             if entry != name and entry in self._presets.standards.get(section, {}):
                 return self._presets.standards[section][entry]
         return None
+
+
+def _reason(name: str) -> str:
+    if name.startswith(_ANGLES) and name.endswith(_TURNS):
+        return (
+            "an angle whose unit and sign differ between versions of Live Link Face; name the "
+            "column head_pitch, head_yaw or head_roll [deg; up, left, left] to turn the head"
+        )
+    return "the rig has no such target and no muscles for it"

@@ -2,8 +2,8 @@
 
 from risorius._formats import Format, register
 from risorius.io.gltf.read import read_gltf_head, read_gltf_landmarks, read_gltf_rig
-from risorius.io.gltf.track import WeightTrack
 from risorius.io.gltf.write import write_glb
+from risorius.io.track import WeightTrack
 
 __all__ = ["WeightTrack", "read_gltf_head", "read_gltf_landmarks", "read_gltf_rig", "write_glb"]
 

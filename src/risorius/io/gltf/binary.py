@@ -18,7 +18,7 @@ __all__ = ["BinaryBuilder"]
 
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 _COMPONENT = {"f4": 5126, "u4": 5125, "u2": 5123}
-_TYPE = {1: "SCALAR", 2: "VEC2", 3: "VEC3"}
+_TYPE = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 
 
 class _Pool:
@@ -60,7 +60,7 @@ class BinaryBuilder:
     def accessor(
         self, values: npt.NDArray[Any], *, target: int | None = ARRAY_BUFFER, bounds: bool = False
     ) -> int:
-        """Add `values` (n,) or (n, 2..3) and return the index of their accessor."""
+        """Add `values` (n,) or (n, 2..4) and return the index of their accessor."""
         accessor = _described(values, bounds)
         accessor["bufferView"] = self.view(values, target=target)
         return self._add(accessor)

@@ -1,71 +1,66 @@
-"""Weights over time, as the animation of a GLB."""
+"""Motion of a rig as the animation of a GLB, and the nodes that turn its head."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
-from risorius._check import FloatArray
-from risorius.errors import ShapeError
 from risorius.io.gltf.binary import BinaryBuilder
+from risorius.io.track import TurnTrack, WeightTrack
 
-__all__ = ["WeightTrack", "show_of_shapes", "track_to_json"]
+__all__ = ["HEAD_NODE", "add_turning_nodes", "track_to_json"]
 
-_SECONDS_PER_SHAPE = 1.0
+HEAD_NODE = "head_turn"
+"""Name of the node that turns the head; it stands at the pivot."""
 
 
-@dataclass(frozen=True, eq=False)
-class WeightTrack:
-    """Weights of all targets of a rig over time, straight between the moments.
+def add_turning_nodes(turns: TurnTrack, nodes: list[dict[str, Any]], children: list[int]) -> int:
+    """Add a node that turns `children` about the pivot, and return its index.
 
-    Parameters
-    ----------
-    times : (k,) float64
-        Rising from 0 or above [s].
-    weights : (k, t) float32
-        In the order of the rig's targets.
-    name : str
-        Of the animation.
+    It stands at the pivot and carries a node that goes back by as much, so that at rest all stays
+    where it was.
     """
-
-    times: FloatArray
-    weights: npt.NDArray[np.float32]
-    name: str = "stream"
-
-    def __post_init__(self) -> None:
-        if self.weights.ndim != 2 or self.times.shape != (len(self.weights),):
-            raise ShapeError(
-                f"track: times {self.times.shape} and weights {self.weights.shape} must be (k,) "
-                "and (k, t)"
-            )
-        if not len(self.times) or self.times[0] < 0.0 or (np.diff(self.times) <= 0.0).any():
-            raise ShapeError("track: there must be moments, and they must rise from 0 or above")
-
-
-def show_of_shapes(count: int) -> WeightTrack:
-    """Return the track in which each of `count` shapes comes and goes, one after the other."""
-    times = np.arange(2.0 * count + 1.0, dtype=np.float64) * (0.5 * _SECONDS_PER_SHAPE)
-    weights = np.zeros((len(times), count), np.float32)
-    weights[2 * np.arange(count) + 1, np.arange(count)] = 1.0
-    return WeightTrack(times, weights, "shapes")
+    pivot = [float(x) for x in turns.pivot]
+    nodes.append({"name": "head_rest", "translation": [-x for x in pivot], "children": children})
+    nodes.append({"name": HEAD_NODE, "translation": pivot, "children": [len(nodes) - 1]})
+    return len(nodes) - 1
 
 
 def track_to_json(
-    track: WeightTrack, nodes: Sequence[int], binary: BinaryBuilder
+    track: WeightTrack,
+    nodes: Sequence[int],
+    binary: BinaryBuilder,
+    *,
+    turning: int | None = None,
 ) -> dict[str, Any]:
-    """Add a track to `binary` and return the animation that moves the weights of `nodes` by it."""
-    sampler = {
-        "input": binary.accessor(track.times.astype("<f4"), target=None, bounds=True),
-        "output": binary.accessor(track.weights.astype("<f4").ravel(), target=None),
-        "interpolation": "LINEAR",
-    }
-    targets = [{"node": node, "path": "weights"} for node in nodes]
+    """Add a track to `binary` and return the animation that plays it.
+
+    Parameters
+    ----------
+    track : WeightTrack
+    nodes : sequence of int
+        Nodes whose weights move.
+    binary : BinaryBuilder
+    turning : int, optional
+        Node that turns the head.
+    """
+    times = binary.accessor(track.times.astype("<f4"), target=None, bounds=True)
+    outputs: list[tuple[int, Sequence[int], str]] = []
+    if nodes:
+        weights = binary.accessor(track.weights.astype("<f4").ravel(), target=None)
+        outputs.append((weights, nodes, "weights"))
+    if track.turns is not None and turning is not None:
+        rotations = binary.accessor(track.turns.rotations.astype("<f4"), target=None)
+        outputs.append((rotations, [turning], "rotation"))
     return {
         "name": track.name,
-        "samplers": [sampler],
-        "channels": [{"sampler": 0, "target": target} for target in targets],
+        "samplers": [
+            {"input": times, "output": output, "interpolation": "LINEAR"}
+            for output, _, _ in outputs
+        ],
+        "channels": [
+            {"sampler": sampler, "target": {"node": node, "path": path}}
+            for sampler, (_, moved, path) in enumerate(outputs)
+            for node in moved
+        ],
     }

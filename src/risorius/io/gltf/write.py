@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from risorius._check import FloatArray
-from risorius.errors import FormatError, ShapeError
+from risorius.errors import FormatError
 from risorius.head.frame import Frame
 from risorius.io.atomic import write_bytes
 from risorius.io.finite import require_finite
@@ -21,9 +21,10 @@ from risorius.io.gltf.primitives import SOURCE_ATTRIBUTE
 from risorius.io.gltf.split import Primitive, Split, split
 from risorius.io.gltf.targets import add_targets
 from risorius.io.gltf.topology import CORNERS, SIZES, topology_to_json
-from risorius.io.gltf.track import WeightTrack, show_of_shapes, track_to_json
+from risorius.io.gltf.track import add_turning_nodes, track_to_json
 from risorius.io.looks import look_of
 from risorius.io.rig_json import rig_to_json
+from risorius.io.track import WeightTrack, show_of_shapes
 from risorius.rig.rig import Rig
 
 __all__ = ["glb_bytes", "write_glb"]
@@ -49,7 +50,8 @@ def write_glb(
     animation : bool
         Add an animation that shows one shape after the other.
     track : WeightTrack, optional
-        Add an animation that plays this instead.
+        Add an animation that plays this instead; where it turns the head, a node ``head_turn``
+        carries all parts and turns about the track's pivot.
     metres : bool
         Add a root node that turns the head to metres, +Y up and +Z forward, as glTF prescribes;
         without it the numbers are those of the input.
@@ -78,11 +80,8 @@ def glb_bytes(
 ) -> bytes:
     """Return the bytes that `write_glb` writes; `where` opens every message."""
     _require_writable(rig, where)
-    if track is not None and track.weights.shape[1] != len(rig.targets):
-        raise ShapeError(
-            f"track: has weights of {track.weights.shape[1]} targets, the rig has "
-            f"{len(rig.targets)}"
-        )
+    if track is not None:
+        track.require_fits(len(rig.targets))
     parts = split(rig)
     writer = _Writer(rig, parts)
     meshes = [
@@ -101,13 +100,18 @@ def glb_bytes(
         "meshes": meshes,
         "materials": writer.materials,
     }
+    top, turning = list(range(len(nodes))), None
+    if track is not None and track.turns is not None:
+        turning = add_turning_nodes(track.turns, nodes, top)
+        top = [turning]
     if metres:
-        nodes.append(_to_metres(rig.frame, list(range(len(nodes)))))
-        content["scenes"][0]["nodes"] = [len(nodes) - 1]
+        nodes.append(_to_metres(rig.frame, top))
+        top = [len(nodes) - 1]
+    content["scenes"][0]["nodes"] = top
     if track is None and animation:
         track = show_of_shapes(len(rig.targets))
-    if track is not None and moving:
-        content["animations"] = [track_to_json(track, moving, writer.binary)]
+    if track is not None and (moving or turning is not None):
+        content["animations"] = [track_to_json(track, moving, writer.binary, turning=turning)]
     return writer.binary.glb(content)
 
 
