@@ -110,15 +110,30 @@ def _in_ellipse(
 
 
 def _simplified(positions: FloatArray, faces: IntArray) -> TriMesh:
+    """Return the used part of a mesh, with few triangles where it can be simplified."""
+    faces = _without_pinches(faces)
     used, local = np.unique(faces, return_inverse=True)
     mesh = TriMesh(positions[used], local.reshape(-1, 3).astype(np.int32))
-    if mesh.face_count <= _FACES or not _can_simplify(mesh.faces):
+    if mesh.face_count <= _FACES:
         return mesh
     points, triangles, *_ = igl.decimate(mesh.positions, mesh.faces.astype(np.int64), _FACES)
+    # Collapsing needs a manifold; what is none serves as it is.
+    if not len(triangles):
+        return mesh
     return TriMesh(np.asarray(points), np.asarray(triangles, np.int32))
 
 
-def _can_simplify(faces: IntArray) -> bool:
-    """Return whether no edge has two faces on one side, which the simplification cannot take."""
-    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    return len(np.unique(sides, axis=0)) == len(sides)
+def _without_pinches(faces: IntArray) -> IntArray:
+    """Return `faces` (m, 3) without those at edges or vertices where the surface is pinched."""
+    while len(faces):
+        sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+        ordered = np.sort(sides, axis=1)
+        edges, count = np.unique(ordered, axis=0, return_counts=True)
+        _, same = np.unique(sides, axis=0, return_counts=True)
+        open_ends = np.bincount(edges[count == 1].ravel(), minlength=int(faces.max()) + 1)
+        bad = open_ends > 2
+        bad[edges[count > 2].ravel()] = True
+        if not bad.any():
+            return faces if (same == 1).all() else faces[:0]
+        faces = faces[~bad[faces].any(axis=1)]
+    return faces

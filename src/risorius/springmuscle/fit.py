@@ -94,8 +94,7 @@ def fit_muscles(recipe: OutlineRecipe, ground: Ground) -> MuscleSet:
     muscles = tuple(fitted.values())
     if not ground.parameters.merge:
         return MuscleSet(muscles)
-    hosts = tuple(outline.settings.host for outline in outlines)
-    return merge_muscles(muscles, hosts=hosts, yielding=ground.parameters.yielding)
+    return merge_muscles(muscles, yielding=ground.parameters.yielding)
 
 
 def fit_muscle(outline: MuscleOutline, ground: Ground) -> FittedMuscle:
@@ -110,11 +109,12 @@ def fit_muscle(outline: MuscleOutline, ground: Ground) -> FittedMuscle:
     layout = lay_out(outline, surface)
     patch = find_patch(layout, surface, parameters)
     layer = Layer(outline, surface, parameters)
-    paired = outline.name.endswith(("_l", "_r"))
-    refined = refine(layout, layer, patch, mirror=ground.symmetric and not paired)
+    mirror = ground.symmetric and not outline.name.endswith(("_l", "_r"))
+    refined = refine(layout, layer, patch, mirror=mirror)
     bones = row_bones(
-        refined.points, refined.normals, patch, surface, ground.grown_bones, closed=layout.closed
-    )
+        refined.points, refined.normals, patch, surface, ground.grown_bones,
+        closed=layout.closed, mirror=mirror,
+    )  # fmt: skip
     fibres = make_fibres(refined, bones, layer, closed=layout.closed)
     pivot = None
     if outline.ring is not None and outline.ring.around_eye and parameters.lines:
@@ -133,6 +133,7 @@ def _action(outline: MuscleOutline, ground: Ground, edge: float) -> MuscleAction
         control=outline.control or outline.name,
         max_contraction=settings.max_contraction,
         stiffness=settings.stiffness,
+        host=settings.host,
         radius=radius,
         fixed_point=settings.fixed_point if ground.parameters.loose_origins else 0.0,
     )

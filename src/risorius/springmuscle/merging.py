@@ -14,9 +14,7 @@ from risorius.springmuscle.muscle_set import Links, MuscleSet
 __all__ = ["merge_muscles"]
 
 
-def merge_muscles(
-    muscles: tuple[FittedMuscle, ...], *, hosts: tuple[bool, ...] | None = None, yielding: float
-) -> MuscleSet:
+def merge_muscles(muscles: tuple[FittedMuscle, ...], *, yielding: float) -> MuscleSet:
     """Link every fibre whose end lies inside an ellipsoid of another muscle.
 
     Bodies that merely cross are never linked, and neither are muscles of opposite sides, except to
@@ -25,46 +23,36 @@ def merge_muscles(
     Parameters
     ----------
     muscles : tuple of FittedMuscle
-    hosts : tuple of bool, optional
-        Which of them ends may merge with; all, if left out.
     yielding : float
         See `Links`.
     """
     plain = MuscleSet(muscles)
-    may_host = np.array([True] * len(muscles) if hosts is None else hosts)
-    ends = plain.fibre_starts[1:] - 1
-    sides = np.array([muscle.side for muscle in muscles])
-    solids = Ellipsoids.of(plain)
-    found: list[tuple[int, int, int, int]] = []
-    for fibre, muscle in enumerate(plain.fibre_muscle):
-        if plain.ring_muscles[muscle]:
-            continue
-        other = plain.segment_muscle
-        wanted = (other != muscle) & may_host[other] & (sides[other] * sides[muscle] >= 0)
-        segments = np.flatnonzero(wanted).astype(np.int32)
-        end = plain.points[ends[fibre]]
-        inside = solids.inside(np.tile(end, (len(segments), 1)), segments)
-        found.extend(
-            (fibre, int(ends[fibre]), int(plain.segment_fibre[s]), int(s)) for s in segments[inside]
-        )
-    table = np.array(found, np.int32).reshape(-1, 4)
+    fibres = np.flatnonzero(~plain.ring_muscles[plain.fibre_muscle])
+    ends = plain.fibre_starts[1:][fibres] - 1
+    own, other = plain.fibre_muscle[fibres], plain.segment_muscle
+    sides = np.array([muscle.side for muscle in muscles], np.int32)
+    hosts = np.array([muscle.action.host for muscle in muscles], bool)
+    wanted = (own[:, None] != other) & hosts[other] & (sides[own][:, None] * sides[other] >= 0)
+    # Only ellipsoids that reach as far as the end are asked.
+    apart = np.linalg.norm(plain.points[ends][:, None] - plain.centres[None], axis=2)
+    row, segment = np.nonzero(wanted & (apart <= plain.half_axes.max(axis=1)))
+    inside = Ellipsoids.of(plain).inside(plain.points[ends[row]], segment.astype(np.int32))
+    row, segment = row[inside], segment[inside]
     links = Links(
-        np.ascontiguousarray(table[:, :2]),
-        np.ascontiguousarray(table[:, 2:]),
-        _groups(table, plain),
+        np.stack([fibres[row], ends[row]], axis=1).astype(np.int32),
+        np.stack([plain.segment_fibre[segment], segment], axis=1).astype(np.int32),
+        _groups(ends[row] - fibres[row] - 1, segment, len(other)),
         yielding,
     )
     return MuscleSet(muscles, links)
 
 
-def _groups(table: IntArray, muscles: MuscleSet) -> tuple[IntArray, ...]:
-    """Return the segments that hang together through links, smallest number first."""
-    if not len(table):
+def _groups(ends: IntArray, hosts: IntArray, count: int) -> tuple[IntArray, ...]:
+    """Return which of `count` segments hang together through links, smallest number first."""
+    if not len(ends):
         return ()
-    last = table[:, 1] - table[:, 0] - 1
-    count = len(muscles.segment_fibre)
-    graph = coo_matrix((np.ones(len(table)), (last, table[:, 3])), shape=(count, count))
+    graph = coo_matrix((np.ones(len(ends)), (ends, hosts)), shape=(count, count))
     _, label = connected_components(graph, directed=False)
-    linked = np.unique(np.concatenate([last, table[:, 3]]))
+    linked = np.unique(np.concatenate([ends, hosts]))
     groups = [linked[label[linked] == k] for k in np.unique(label[linked])]
     return tuple(group.astype(np.int32) for group in sorted(groups, key=lambda g: int(g[0])))

@@ -40,6 +40,8 @@ class MuscleAction:
         together.
     bulge : float
         Gain of height per strain: 2 as published.
+    host : bool
+        Whether ends of other muscles merge with it.
     """
 
     control: str
@@ -48,6 +50,7 @@ class MuscleAction:
     radius: float = 8.0
     fixed_point: float = 0.0
     bulge: float = 2.0
+    host: bool = True
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from risorius._check import FloatArray
+from risorius._check import FloatArray, IntArray
 from risorius.springmuscle.bones import SkinBones
 from risorius.springmuscle.grid import Patch
 from risorius.springmuscle.muscle import JAW, SKULL
@@ -62,13 +62,42 @@ def row_bones(
     grown: GrownBones,
     *,
     closed: bool,
+    mirror: bool,
 ) -> npt.NDArray[np.int8]:
     """Return the bone (r,) of every row of a grid (r, c, 3): `SKULL` or `JAW`.
 
     A ray from each point through the skin names the nearest corner of the triangle it meets, that
-    names a bone, and the majority of the row decides; a tie or no vote takes the nearest row that
-    has one, and in the end the skull (Kaehler et al. 2001, section 5.4).
+    names a bone, and the majority of the row decides; a tie or no vote takes the nearest rows that
+    have one, and in the end the skull (Kaehler et al. 2001, section 5.4). With `mirror`, rows vote
+    together with their mirror images.
     """
+    balance = _votes(points, normals, patch, surface, grown)
+    if mirror:
+        middle = points.mean(axis=1)
+        apart = np.linalg.norm(middle[:, None] - middle[None] * [-1.0, 1.0, 1.0], axis=2)
+        balance = balance + balance[apart.argmin(axis=1)]
+    if closed:
+        balance[0] = balance[-1] = balance[0] + balance[-1]
+    decided = np.flatnonzero(balance)
+    rows = len(points)
+    if not len(decided):
+        return np.full(rows, SKULL, np.int8)
+    apart = np.abs(np.arange(rows)[:, None] - decided[None])
+    if closed:
+        apart = np.minimum(apart, rows - 1 - apart)
+    nearest = apart == apart.min(axis=1, keepdims=True)
+    chosen = (nearest * np.sign(balance[decided])).sum(axis=1)
+    return np.where(chosen > 0, JAW, SKULL).astype(np.int8)
+
+
+def _votes(
+    points: FloatArray,
+    normals: FloatArray,
+    patch: Patch,
+    surface: SkinSurface,
+    grown: GrownBones,
+) -> IntArray:
+    """Return by how many points (r,) of each row the jaw leads."""
     rows, columns = points.shape[:2]
     distance, hit = patch.cast(points.reshape(-1, 3), normals.reshape(-1, 3))
     met = hit >= 0
@@ -78,15 +107,4 @@ def row_bones(
     votes = np.zeros(rows * columns, np.int8)
     votes[met] = grown.bones[vertices]
     votes = votes.reshape(rows, columns)
-    balance = (votes == JAW).sum(axis=1) - (votes == SKULL).sum(axis=1)
-    decided = np.flatnonzero(balance)
-    if not len(decided):
-        return np.full(rows, SKULL, np.int8)
-    apart = np.abs(np.arange(rows)[:, None] - decided[None])
-    if closed:
-        apart = np.minimum(apart, rows - 1 - apart)
-    chosen = balance[decided[apart.argmin(axis=1)]]
-    bones = np.where(chosen > 0, JAW, SKULL).astype(np.int8)
-    if closed:
-        bones[-1] = bones[0]
-    return bones
+    return ((votes == JAW).sum(axis=1) - (votes == SKULL).sum(axis=1)).astype(np.int32)
