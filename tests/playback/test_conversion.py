@@ -1,8 +1,13 @@
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from risorius.controls.fap import faps
 from risorius.errors import ParameterError
+from risorius.io.motion import read_stream, write_stream
+from risorius.playback.clamping import clamped
 from risorius.playback.conversion import converted
 from risorius.playback.weights import RigWeights
 from tests.io.motion.streams import stream_of
@@ -54,6 +59,36 @@ def test_turns_of_the_head_are_passed_on_to_parameters() -> None:
     stream, _ = converted(stream_of([{"fap_48": 200.0, "fap_3": 10.0}]), _weights(), to="fap")
     (frame,) = stream
     assert frame.values["fap_48"] == 200.0
+
+
+def test_turns_of_the_head_are_passed_on_to_other_sets_in_degrees() -> None:
+    take = stream_of([{"fap_49": 1e5, "jawOpen": 0.5}])
+    stream, _ = converted(take, _weights(), to="arkit")
+    assert stream.names[-3:] == ("head_pitch", "head_yaw", "head_roll")
+    (frame,) = stream
+    assert frame.values["head_yaw"] == pytest.approx(57.29578)
+    back, _ = converted(stream, _weights(), to="fap")
+    (again,) = back
+    assert again.values["fap_49"] == pytest.approx(1e5)
+
+
+@pytest.mark.real
+@pytest.mark.filterwarnings("ignore::risorius.errors.RisoriusWarning")
+@pytest.mark.parametrize("name", ["anger", "fear", "joy", "pride"])
+def test_what_a_face_can_make_of_a_real_stream_comes_back_within_a_unit(
+    real_data: Path, tmp_path: Path, name: str
+) -> None:
+    weights = _weights()
+    read = read_stream(real_data / "xface_fap" / f"{name}.fap")
+    made = list(converted(clamped(read), weights, to="fap")[0])
+    played, _ = converted(stream_of([frame.values for frame in made]), weights, to="singles")
+    write_stream(played, tmp_path / "singles.csv")
+    back, _ = converted(read_stream(tmp_path / "singles.csv"), weights, to="fap")
+    for first, second in zip(made, back, strict=True):
+        for parameter, value in first.values.items():
+            number = int(parameter[4:])
+            if faps()[number].unit != "AU":
+                assert second.values[parameter] == pytest.approx(value, abs=1.0), parameter
 
 
 def test_the_error_is_that_of_the_latest_passage() -> None:

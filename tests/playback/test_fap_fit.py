@@ -46,9 +46,8 @@ def test_parameters_that_muscles_make_come_back_within_a_unit(fit: FapFit) -> No
         worst.append(
             max(abs(again[n] - v) for n, v in asked.items() if faps()[int(n[4:])].unit != "AU")
         )
-    # The effort of muscles biases the answer a little.
-    assert max(worst) < 3.0
-    assert np.median(worst) < 1.0
+    assert max(worst) < 0.5
+    assert np.median(worst) < 0.1
 
 
 def test_the_answer_does_not_depend_on_earlier_frames(fit: FapFit) -> None:

@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from risorius.controls import default_presets
 from risorius.errors import RisoriusWarning
 from risorius.playback.clamping import clamped
 from risorius.playback.shape_names import TARGET_SETS, set_of
@@ -38,10 +39,30 @@ def test_one_muscle_is_never_asked_for_more_than_it_has() -> None:
 
 def test_what_the_rig_cannot_play_is_remembered_with_the_reason() -> None:
     weights = RigWeights(played_rig())
-    weights.of({"HeadYaw": 0.1, "fap_48": 20.0, "fap_29": 0.0, "fap_3": 1.0})
-    assert set(weights.unmatched) == {"HeadYaw", "fap_48"}
-    assert "no such target" in weights.unmatched["HeadYaw"]
-    assert "turns the whole head" in weights.unmatched["fap_48"]
+    weights.of({"HeadYaw": 0.1, "Smirk": 0.1, "fap_47": 20.0, "fap_29": 0.0, "fap_3": 1.0})
+    assert set(weights.unmatched) == {"HeadYaw", "Smirk", "fap_47"}
+    assert "name the column head_pitch, head_yaw or head_roll" in weights.unmatched["HeadYaw"]
+    assert "no such target" in weights.unmatched["Smirk"]
+    assert "no control rolls the tongue" in weights.unmatched["fap_47"]
+
+
+def test_turns_of_the_head_are_left_to_the_player() -> None:
+    weights = RigWeights(played_rig())
+    assert not weights.of({"head_yaw": 10.0, "fap_48": 500.0}).any()
+    assert weights.unmatched == {}
+
+
+def test_a_control_that_the_face_lacks_is_replaced_as_the_presets_say() -> None:
+    rig = played_rig()
+    singles = rig.subset([name for name in rig.names if set_of(name) == "singles"])
+    absent = {"frontalis_inner_l", "frontalis_inner_r", "frontalis_outer_l", "frontalis_outer_r"}
+    assert absent & {control.name for control in rig.controls}, "the face has these muscles"
+    kept = tuple(control for control in rig.controls if control.name not in absent)
+    fewer = singles.subset([n for n in singles.names if n not in absent])
+    fewer = fewer.with_targets(fewer.targets, controls=kept)
+    row = RigWeights(fewer).of({"browInnerUp": 1.0})
+    used = {name for name, weight in zip(fewer.names, row) if weight}
+    assert used == set(default_presets().fit(default_presets().arkit["browInnerUp"], kept).pose)
 
 
 def test_every_target_belongs_to_a_known_set() -> None:

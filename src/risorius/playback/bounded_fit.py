@@ -5,16 +5,23 @@ from __future__ import annotations
 import numpy as np
 
 from risorius._check import FloatArray
-from risorius.playback.kernels.bounded import descend
+from risorius.playback.kernels.bounded import descend, finish
 
 __all__ = ["fit_bounded"]
 
-_TOLERANCE = 1e-5
-_SWEEPS = 500
+# Descent only has to find out which bounds hold; the rest is exact.
+_NEAR = 1e-3
+_SWEEPS = 40
+_SLOPE = 1e-9
 
 
 def fit_bounded(
-    gram: FloatArray, linear: FloatArray, *, low: FloatArray, high: FloatArray
+    gram: FloatArray,
+    linear: FloatArray,
+    *,
+    low: FloatArray,
+    high: FloatArray,
+    start: FloatArray | None = None,
 ) -> FloatArray:
     """Return the x (k,) with low <= x <= high that minimises x' G x / 2 - h' x.
 
@@ -26,12 +33,15 @@ def fit_bounded(
         h.
     low, high : (k,) float64
         Bounds.
+    start : (k,) float64, optional
+        Where to begin, zero if left out.
 
     Notes
     -----
-    Always starts from the bound nearest to zero, so that a frame's answer does not depend on the
-    frames before it.
+    The start is never the answer of another frame, so that a frame does not depend on those before
+    it.
     """
-    x = np.clip(np.zeros(len(linear)), low, high)
-    descend(gram, linear, low, high, _TOLERANCE, _SWEEPS, x)
+    x = np.clip(np.zeros(len(linear)) if start is None else start, low, high)
+    descend(gram, linear, low, high, _NEAR, _SWEEPS, x)
+    finish(gram, linear, low, high, _SLOPE, x)
     return x
