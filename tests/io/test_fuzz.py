@@ -20,6 +20,7 @@ from risorius.io.npz import write_npz
 from risorius.io.obj_text import ObjText
 from tests.io.glb import Maker
 from tests.io.rigs import make_mesh, make_rig
+from tests.io.test_fdp import GOOD as FDP
 from tests.io.test_gltf_read import CORNERS
 from tests.io.test_ply import ascii_ply, binary_ply
 
@@ -60,6 +61,7 @@ SEEDS: dict[str, tuple[str, Callable[[Path], bytes]]] = {
     "stl ascii": (".stl", _stl("ascii")),
     "stl binary": (".stl", _stl("binary")),
     "landmarks": (".json", _landmarks),
+    "fdp": (".fdp", lambda _: FDP.encode()),
 }
 READERS = (_formats.read_head, _formats.read_rig, _formats.read_landmarks)
 
