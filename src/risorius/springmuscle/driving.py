@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -39,6 +39,9 @@ class Drive:
         Stiffness of each muscle spring over that of an active muscle.
     contracted : Contracted
         The muscles.
+    guess : (n, 3) float64
+        Where the skin would be if every muscle moved it by what it does alone [mm]; the reference
+        where that is not known.
     """
 
     control: SpringControl
@@ -47,6 +50,7 @@ class Drive:
     partners: FloatArray
     activity: FloatArray
     contracted: Contracted
+    guess: FloatArray
 
 
 def jaw_pose(values: Mapping[str, float]) -> JawPose:
@@ -69,12 +73,16 @@ class Driver:
         Of the muscles.
     mechanics : Mechanics
     parameters : SpringParameters
+    fields : mapping of str to (n, 3) float64
+        Displacement of the skin by every muscle control alone at 1 [mm]; with them muscles ride
+        on skin that others move.
     """
 
     springs: SkinSprings
     contraction: Contraction
     mechanics: Mechanics
     parameters: SpringParameters
+    fields: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
 
     def drive(self, values: Mapping[str, float]) -> Drive:
         """Return what `values` ask for."""
@@ -127,7 +135,7 @@ class Driver:
         )
         mirrored = 2.0 * reference[springs.vertices] - base
         return self._drive(
-            (base + feet, mirrored + partners), (feet, partners), reference, amounts, contracted,
+            (base + feet, mirrored + partners), (feet, partners), reference, values, contracted,
             jaw,
         )  # fmt: skip
 
@@ -146,7 +154,7 @@ class Driver:
         taken = (start - rest)[springs.vertices]
         mirrored = 2.0 * rest[springs.vertices] - springs.rest_feet
         moved = (feet - springs.rest_feet - taken, partners - mirrored - taken)
-        return self._drive((feet, partners), moved, start, amounts, contracted, jaw)
+        return self._drive((feet, partners), moved, start, values, contracted, jaw)
 
     def _rest_shape(self, reference: FloatArray, jaw: JawPose) -> dict[str, FloatArray]:
         """Return what keeps the network at rest in `reference` (n, 3)."""
@@ -167,16 +175,19 @@ class Driver:
         anchors: tuple[FloatArray, FloatArray],
         moved: tuple[FloatArray, FloatArray],
         reference: FloatArray,
-        amounts: FloatArray,
+        values: Mapping[str, float],
         contracted: Contracted,
         jaw: JawPose,
     ) -> Drive:
         p, springs = self.parameters, self.springs
-        limits = np.array([m.action.max_contraction for m in self.contraction.muscles.muscles])
-        share = np.minimum(amounts / np.maximum(limits, 1e-9), 1.0)
-        activity = (p.resting + (1.0 - p.resting) * share)[springs.muscles]
-        if p.riding:
-            ride = self._ride(0.5 * (moved[0] + moved[1]), share[springs.muscles])
+        muscles = self.contraction.muscles.muscles
+        share = np.array([values.get(m.action.control, 0.0) for m in muscles])
+        awake = np.clip(share / p.waking, 0.0, 1.0) if p.waking > 0.0 else share > 0.0
+        activity = (p.resting + (1.0 - p.resting) * awake)[springs.muscles]
+        guess = reference
+        if self.fields:
+            guess = self._guess(values, jaw)
+            ride = self._ride(values, reference, jaw)
             anchors = (anchors[0] + ride, anchors[1] + ride)
             moved = (moved[0] + ride, moved[1] + ride)
         stiffness = springs.stiffness * activity
@@ -198,24 +209,39 @@ class Driver:
             anchor_stiffness=np.concatenate([np.tile(stiffness, both), springs.bone_stiffness]),
             hold_targets=target, hold_stiffness=hold, **self._rest_shape(reference, jaw),
         )  # fmt: skip
-        return Drive(control, reference, *moved, activity, contracted)
+        return Drive(control, reference, *moved, activity, contracted, guess)
 
-    def _ride(self, middle: FloatArray, share: FloatArray) -> FloatArray:
-        """Return how far (a, 3) each muscle spring is taken along by what others move [mm].
+    def expected(self, values: Mapping[str, float]) -> FloatArray:
+        """Return the sum (n, 3) of what each muscle does alone, before the jaw [mm]."""
+        total = np.zeros_like(self.springs.skin.positions)
+        for name, field in self.fields.items():
+            amount = values.get(name, 0.0)
+            if amount > 0.0:
+                total += min(amount, 1.0) * field
+        return total
 
-        Parameters
-        ----------
-        middle : (a, 3) float64
-            Displacement between each foot and its partner [mm].
-        share : (a,) float64
-            Control of each spring's muscle, 0 to 1.
-        """
-        springs, n = self.springs, len(self.springs.skin.positions)
-        own = (springs.shares * (share > 0.0))[:, None] * middle
-        total = np.stack(
-            [np.bincount(springs.vertices, own[:, axis], n) for axis in range(3)], axis=1
-        )
-        return self.parameters.riding * (total[springs.vertices] - own)
+    def _guess(self, values: Mapping[str, float], jaw: JawPose) -> FloatArray:
+        """Return where the skin (n, 3) would be if all that muscles do alone added up [mm]."""
+        moved = self.springs.skin.positions + self.expected(values)
+        if jaw.at_rest:
+            return moved
+        return self.mechanics.jaw.move(moved, jaw, share=self.mechanics.jaw_share)
+
+    def _ride(self, values: Mapping[str, float], reference: FloatArray, jaw: JawPose) -> FloatArray:
+        """Return how far (a, 3) each muscle spring is taken along by what others do [mm]."""
+        springs, vertices = self.springs, self.springs.vertices
+        total = self.expected(values)
+        ride = total[vertices]
+        for number, muscle in enumerate(self.contraction.muscles.muscles):
+            amount = values.get(muscle.action.control, 0.0)
+            if amount > 0.0:
+                own = springs.muscles == number
+                field = self.fields[muscle.action.control]
+                ride[own] -= min(amount, 1.0) * field[vertices[own]]
+        if jaw.at_rest:
+            return ride
+        start, share = springs.skin.positions[vertices], self.mechanics.jaw_share[vertices]
+        return self.mechanics.jaw.move(start + ride, jaw, share=share) - reference[vertices]
 
     def _bone_anchors(self, jaw: JawPose) -> tuple[FloatArray, FloatArray]:
         """Return the feet (b, 3) on bones and their mirrored partners (b, 3) [mm]."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -149,12 +149,27 @@ class SpringFace:
         skin = build_skin(moving, fitted, partner)
         lips, _ = label_lips(moving.lips, FaceMeasure.of(head.landmarks))
         springs = build_springs(skin, muscles, attachment, lips, p)
-        driver = Driver(springs, Contraction(muscles), moving, p)
+        contraction = Contraction(muscles) if p.linked else Contraction(muscles, sweeps=0)
+        driver = Driver(springs, contraction, moving, p)
         contact = Contact.build(skin, moving) if p.contact else None
         controls = muscles.controls + moving.controls
-        return SpringFace(
+        face = SpringFace(
             head, moving, muscles, springs, driver, contact, controls, p, moving.notes
         )
+        return face.with_fields() if p.riding else face
+
+    def with_fields(self) -> SpringFace:
+        """Return the face with what every muscle control does alone, so that muscles ride."""
+        alone = replace(self, driver=replace(self.driver, fields={}))
+        fields: dict[str, FloatArray] = {}
+        partner = self.springs.skin.partner if self.parameters.even else None
+        for control in self.muscles.controls:
+            other = control.mirror
+            if partner is not None and other != control.name and other in fields:
+                fields[control.name] = fields[other][partner] * MIRROR
+            else:
+                fields[control.name] = alone.displace_skin({control.name: 1.0})
+        return replace(self, driver=replace(self.driver, fields=fields))
 
     def settled(self, values: Mapping[str, float]) -> tuple[Drive, Moved]:
         """Return what a pose asks of the springs and where they come to rest."""

@@ -51,9 +51,14 @@ class SpringParameters:
     resting : float
         What a muscle at rest keeps of its stiffness: at 1 relaxed muscles hold the skin against
         those that act (finding S3).
-    riding : float
-        How far a muscle is taken along where others move its skin, of their motion. Without it
-        muscles that act on the same skin average instead of adding.
+    waking : float
+        Control at which a muscle holds the skin with its full stiffness.
+    riding : bool
+        Whether a muscle is taken along as far as others move its skin. Without it muscles that
+        act on the same skin hold it against each other and average instead of adding.
+    linked : bool
+        Whether ends that lie in other muscles are held there while muscles contract (section 4).
+        Riding does the same for all that hang on one skin.
     fall_off : bool
         Whether muscle springs fade towards the radius of influence.
     by_area : bool
@@ -94,7 +99,9 @@ class SpringParameters:
     mirrors: bool = True
     grip: float = 0.0
     resting: float = 1.0
-    riding: float = 0.0
+    waking: float = 1.0
+    riding: bool = False
+    linked: bool = True
     fall_off: bool = False
     by_area: bool = False
     holding: Holding = "bone"
@@ -115,7 +122,7 @@ class SpringParameters:
             raise ParameterError(f"pretension: {pretension:g} must be below 1, edges keep a length")
         for name in (
             "knee_strain", "stiffening", "least_length", "least_stiffness", "lid_softness",
-            "muscle_stiffness", "grip", "riding", "bone_stiffness", "jaw_stiffness", "home", "tissue",
+            "muscle_stiffness", "grip", "waking", "bone_stiffness", "jaw_stiffness", "home", "tissue",
         ):  # fmt: skip
             as_number(name, getattr(self, name), low=0.0)
         as_number("resting", self.resting, low=0.0, high=1.0)
@@ -139,17 +146,19 @@ PROFILES: dict[str, SpringParameters] = {
         pretension=0.7,
         stiffening=0.0,
         lid_softness=0.3,
-        muscle_stiffness=0.15,
-        grip=0.5,
-        resting=0.05,
-        riding=1.0,
+        muscle_stiffness=0.1,
+        grip=0.3,
+        resting=0.0,
+        waking=0.0,
+        riding=True,
+        linked=False,
         fall_off=True,
         by_area=True,
         holding="tissue",
         bone_stiffness=0.0,
         jaw_stiffness=0.0,
         home=0.0,
-        tissue=0.15,
+        tissue=0.1,
         carried=True,
         masses="stiffness",
         even=True,

@@ -16,7 +16,7 @@ def start_of(springs: SkinSprings, drive: Drive, *, passes: int) -> FloatArray:
 
     Each vertex moves with the mean of its feet, weighted by stiffness against what draws it home;
     skin that hangs on nothing takes the mean of its neighbours in `passes` passes (ours; the paper
-    leaves it open).
+    leaves it open). Where it is known what every muscle does alone, their sum is nearer.
 
     Parameters
     ----------
@@ -28,6 +28,8 @@ def start_of(springs: SkinSprings, drive: Drive, *, passes: int) -> FloatArray:
     """
     if passes == 0:
         return drive.reference
+    if drive.guess is not drive.reference:
+        return drive.guess
     skin, n = springs.skin, len(drive.reference)
     stiffness = springs.stiffness * drive.activity
     total = np.bincount(springs.vertices, stiffness, n)
