@@ -105,10 +105,12 @@ def _overlaps(
 def _lips_above(centres: FloatArray, normals: FloatArray, layer: Layer) -> npt.NDArray[np.int8]:
     """Return the lip (r - 1, c - 1) that the skin above every ellipsoid belongs to."""
     surface = layer.surface
+    # A ring is split down to the commissures; what ends there may move both lips.
+    labels = surface.lips if layer.outline.ring is None else surface.sides
     seen = np.flatnonzero(~surface.hidden)
     above = centres + normals * layer.start(centres)[..., None]
     near = cKDTree(surface.mesh.positions[seen]).query(above.reshape(-1, 3), k=_ASKED)[1]
-    votes = surface.lips[seen[near]].astype(np.int32).sum(axis=1)
+    votes = labels[seen[near]].astype(np.int32).sum(axis=1)
     lips = np.where(np.abs(votes) >= _AGREE, np.sign(votes), 0)
     return lips.reshape(centres.shape[:2]).astype(np.int8)
 

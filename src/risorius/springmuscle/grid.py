@@ -184,19 +184,25 @@ def _filled(row: FloatArray, count: int, where: str) -> FloatArray:
 
 
 def _require_uncrossed(points: FloatArray, surface: SkinSurface, name: str) -> None:
-    """Raise if the first and last columns run against each other between two rows."""
-    forward = points[1:] - points[:-1]
-    across = points[:, -1] - points[:, 0]
+    """Raise if two rows cross, or the first and the last column between them."""
+    first, last = points[:, 0], points[:, -1]
     out = surface.outwards(points.mean(axis=1))
     for row in range(len(points) - 1):
-        left = np.cross(across[row], forward[row, 0]) @ out[row]
-        right = np.cross(across[row], forward[row, -1]) @ out[row]
-        nxt = np.cross(across[row + 1], forward[row, 0]) @ out[row]
-        if left * right < 0.0 and left * nxt < 0.0:
+        a, b, c, d = first[row], last[row], first[row + 1], last[row + 1]
+        if _cross(a, b, c, d, out[row]) or _cross(a, c, b, d, out[row]):
             raise ParameterError(
                 f"outline {name}: rows {row} and {row + 1} cross; list the points of every row "
                 "from the same side"
             )
+
+
+def _cross(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray, out: FloatArray) -> bool:
+    """Return whether the segments a-b and c-d cross, seen along `out`."""
+
+    def turn(p: FloatArray, q: FloatArray, r: FloatArray) -> float:
+        return float(np.cross(q - p, r - p) @ out)
+
+    return turn(a, b, c) * turn(a, b, d) < 0.0 and turn(c, d, a) * turn(c, d, b) < 0.0
 
 
 def find_patch(layout: Layout, surface: SkinSurface, parameters: FitParameters) -> Patch:

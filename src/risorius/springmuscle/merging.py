@@ -37,7 +37,7 @@ def merge_muscles(muscles: tuple[FittedMuscle, ...], *, yielding: float) -> Musc
     apart = np.linalg.norm(plain.points[ends][:, None] - plain.centres[None], axis=2)
     row, segment = np.nonzero(wanted & (apart <= plain.half_axes.max(axis=1)))
     inside = Ellipsoids.of(plain).inside(plain.points[ends[row]], segment.astype(np.int32))
-    row, segment = row[inside], segment[inside]
+    row, segment = row[inside], segment[inside].astype(np.int32)
     links = Links(
         np.stack([fibres[row], ends[row]], axis=1).astype(np.int32),
         np.stack([plain.segment_fibre[segment], segment], axis=1).astype(np.int32),

@@ -128,7 +128,7 @@ def view_muscle(
         outline=muscle.outline,
         grid=muscle.grid,
         grid_lines=_grid_lines(muscle.grid),
-        ellipsoids=_transforms(solids, np.flatnonzero(own)),
+        ellipsoids=_transforms(solids, np.flatnonzero(own).astype(np.int32)),
         influenced=binding.vertices,
         jaw_points=points[on_jaw],
         merged=lines,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import cast
 
 import numpy as np
 
@@ -123,6 +122,8 @@ class OutlineSettings:
         How strongly it holds the skin, in units of a plain muscle.
     fixed_point : float
         Place along the fibre that stays; see `MuscleAction`.
+    bulge : float
+        Gain of height per strain; see `MuscleAction`.
     host : bool
         Whether ends of other muscles merge with it; off for a second action on the same ring.
     """
@@ -133,6 +134,7 @@ class OutlineSettings:
     max_contraction: float = 1.0
     stiffness: float = 1.0
     fixed_point: float = 0.0
+    bulge: float = 2.0
     host: bool = True
 
 
@@ -272,7 +274,7 @@ def thickness_at(thickness: Thickness, points: FloatArray, measure: FaceMeasure)
             f"{', '.join(thickness)}"
         )
     places = np.array([measure.landmarks[name] for name in names])
-    values = np.array([cast("float", thickness[name]) for name in names])
+    values = np.array([thickness[name] for name in names])
     square = ((points[:, None] - places[None]) ** 2).sum(axis=2)
     weight = 1.0 / np.maximum(square, 1e-9 * measure.width**2)
     return (weight @ values) / weight.sum(axis=1) * measure.scale

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import asdict
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -15,7 +16,6 @@ from risorius.io.atomic import atomic_write
 from risorius.io.bounded import check_schema, read_json
 from risorius.io.json_fields import Fields, finite_number
 from risorius.landmarks.feature_points import feature_points
-from risorius.springmuscle.muscle import MuscleKind
 from risorius.springmuscle.recipe import (
     MuscleOutline,
     OutlinePoint,
@@ -32,6 +32,7 @@ _KINDS = ("linear", "sheet", "curved", "sphincter")
 _MOST_CONTRACTION = 1.0
 # Lengths beyond this are no lengths of a face [mm at the reference width].
 _LONGEST = 50.0
+_RING_DEFAULTS = {"ahead": 0.0, "around_eye": False, "closed": True}
 
 
 def parse_recipe(data: Mapping[str, Any], *, source: str) -> OutlineRecipe:
@@ -99,7 +100,7 @@ def _read_outline(entry: object, where: str) -> MuscleOutline:
     try:
         return MuscleOutline(
             name,
-            cast("MuscleKind", kind),
+            kind,
             rows,
             mirror=_flag(record, "mirror", True),
             control=record.text("control", default=""),
@@ -178,6 +179,7 @@ def _read_settings(record: Fields) -> OutlineSettings:
         max_contraction=_number(record, "max_contraction", 1.0, 0.0, _MOST_CONTRACTION),
         stiffness=_number(record, "stiffness", 1.0, 0.0, 1000.0),
         fixed_point=_number(record, "fixed_point", 0.0, 0.0, 1.0),
+        bulge=_number(record, "bulge", 2.0, 0.0, 20.0),
         host=_flag(record, "host", True),
     )
 
@@ -230,9 +232,15 @@ def _text(outline: MuscleOutline) -> str:
         "max_contraction": settings.max_contraction,
         "stiffness": settings.stiffness,
         "fixed_point": settings.fixed_point,
+        "bulge": settings.bulge,
         "host": settings.host,
     }
-    plain = {key: value for key, value in head.items() if value not in (None, [], {})}
+    defaults = {**asdict(OutlineSettings()), **_RING_DEFAULTS}
+    plain = {
+        key: value
+        for key, value in head.items()
+        if value not in (None, [], {}) and not (key in defaults and defaults[key] == value)
+    }
     lines = [f'   "{key}": {json.dumps(value, allow_nan=False)}' for key, value in plain.items()]
     rows = ",\n".join(
         f"    {json.dumps([_point(point) for point in row], allow_nan=False)}"

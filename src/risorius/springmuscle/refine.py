@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from risorius._check import BoolArray, FloatArray
 from risorius.springmuscle.fit_parameters import FitParameters
@@ -54,7 +55,7 @@ class _Cells:
     far: FloatArray
     near_place: FloatArray
     far_place: FloatArray
-    counts: FloatArray
+    counts: npt.NDArray[np.int64]
     final: BoolArray
     dirty: BoolArray
 
@@ -311,12 +312,11 @@ def _settle(work: _Work) -> None:
     excess = 0.5 * (work.cells.near + work.cells.far - low - high)
     out = np.maximum(low - work.cells.near, work.cells.far - high)
     excess = np.where(known & (out > -0.1 * (high - low)), excess, 0.0)
-    total, count = np.zeros(work.points.shape[:2]), np.zeros(work.points.shape[:2])
-    for a in (0, 1):
-        for b in (0, 1):
-            rows = slice(a, total.shape[0] - 1 + a), slice(b, total.shape[1] - 1 + b)
-            total[rows] += excess
-            count[rows] += 1.0
+    total, count = np.zeros_like(work.points[..., 0]), np.zeros_like(work.points[..., 0])
+    for a, b in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        rows = slice(a, a + excess.shape[0]), slice(b, b + excess.shape[1])
+        total[rows] += excess
+        count[rows] += 1.0
     if work.closed:
         total[0] = total[-1] = total[0] + total[-1]
         count[0] = count[-1] = count[0] + count[-1]

@@ -112,6 +112,9 @@ def bind_vertices(
             score, distance, fx, fy, fz = rate_foot(
                 dx, dy, dz, normals[i], frames[s], half_axes[s], radius, divide
             )
+            if score < 0.0:
+                segments[i] = -1
+                break
             if score < best:
                 best = score
                 segments[i] = s
@@ -121,12 +124,12 @@ def bind_vertices(
 
 @njit(**FLAGS)
 def rate_foot(dx, dy, dz, normal, frame, a, radius, divide):
-    """Return score, distance and local foot of one vertex on one ellipsoid; inf where refused."""
+    """Return score, distance and local foot of a vertex; inf where refused, -1 where inside."""
     y0 = frame[0, 0] * dx + frame[1, 0] * dy + frame[2, 0] * dz
     y1 = frame[0, 1] * dx + frame[1, 1] * dy + frame[2, 1] * dz
     y2 = frame[0, 2] * dx + frame[1, 2] * dy + frame[2, 2] * dz
     if (y0 / a[0]) ** 2 + (y1 / a[1]) ** 2 + (y2 / a[2]) ** 2 < 1.0:
-        return math.inf, 0.0, 0.0, 0.0, 0.0
+        return -1.0, 0.0, 0.0, 0.0, 0.0
     f0, f1, f2 = outside_foot(y0, y1, y2, a)
     e0, e1, e2 = y0 - f0, y1 - f1, y2 - f2
     distance = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
