@@ -1,14 +1,18 @@
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 
-from risorius.controls import default_presets
+from risorius.controls import arkit_shapes, default_presets
+from risorius.controls.pair_names import pair_name, pair_of
 from risorius.errors import ParameterError
-from risorius.playback.pairs import CorrectivePair, find_pairs, pair_name, pair_of, with_pairs
+from risorius.playback.pairs import CorrectivePair, find_pairs, with_pairs
 from risorius.playback.weights import RigWeights
 from risorius.rig import Rig, bake
 from tests.face_fixtures import builtin_face
+from tests.io.glb import unpack
 
 NAMES = ("jawOpen", "mouthClose", "mouthSmileLeft", "mouthFunnel", "eyeBlinkRight")
 
@@ -67,3 +71,47 @@ def test_names_of_correctives_name_their_shapes() -> None:
 def test_a_budget_of_nothing_is_refused() -> None:
     with pytest.raises(ParameterError, match="budget: 0 is below 1"):
         find_pairs(builtin_face(), {}, budget=0)
+
+
+def test_a_pair_and_its_mirror_image_are_taken_both_or_not_at_all() -> None:
+    names = ("mouthSmileLeft", "mouthSmileRight", "mouthUpperUpLeft", "mouthUpperUpRight")
+    poses = {name: default_presets().arkit[name] for name in names}
+    for budget in (2, 3):
+        found = find_pairs(builtin_face(), poses, budget=budget)
+        sides = [tuple(sorted((pair.first, pair.second))) for pair in found]
+        swapped = [tuple(sorted(map(_other_side, names))) for names in sides]
+        assert len(found) in (2, budget)
+        assert set(sides) == set(swapped)
+
+
+def _other_side(name: str) -> str:
+    return next(shape.mirror for shape in arkit_shapes() if shape.name == name)
+
+
+def test_contrary_shapes_are_no_pair() -> None:
+    names = ("eyeLookInLeft", "eyeLookOutLeft", "jawLeft", "jawRight")
+    poses = {name: default_presets().arkit[name] for name in names}
+    assert find_pairs(builtin_face(), poses, budget=10) == ()
+
+
+def test_the_short_search_finds_what_trying_all_pairs_finds() -> None:
+    names = (*NAMES, "mouthPucker", "mouthLeft", "cheekPuff", "mouthRollLower", "tongueOut")
+    poses = {name: default_presets().arkit[name] for name in names}
+    face = builtin_face()
+    distances = {}
+    alone = {name: face.displace(pose) for name, pose in poses.items()}
+    for a, b in combinations(names, 2):
+        both = {n: poses[a].get(n, 0.0) + poses[b].get(n, 0.0) for n in {**poses[a], **poses[b]}}
+        distances[a, b] = float(((face.displace(both) - alone[a] - alone[b]) ** 2).sum())
+    best = sorted(distances, key=lambda pair: -distances[pair])[:4]
+    found = find_pairs(face, poses, budget=4)
+    assert {frozenset((pair.first, pair.second)) for pair in found} == set(map(frozenset, best))
+
+
+def test_a_file_says_which_shapes_drive_a_corrective(pairs, tmp_path) -> None:
+    rig = _rig(pairs)
+    rig.save(tmp_path / "x.glb")
+    json, _ = unpack((tmp_path / "x.glb").read_bytes())
+    told = json["asset"]["extras"]["risorius"]["correctives"]
+    assert told == {pair.name: [pair.first, pair.second] for pair in pairs}
+    assert Rig.load(tmp_path / "x.glb").names == rig.names

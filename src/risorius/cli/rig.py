@@ -68,6 +68,17 @@ def rig(
         Path | None,
         typer.Option(metavar="PNG", help="Also draw all shapes on one page.", show_default=False),
     ] = None,
+    correctives: Annotated[
+        int,
+        typer.Option(
+            "--correctives",
+            metavar="N",
+            min=0,
+            max=1000,
+            help="Add up to N targets pair_A__B, for the pairs of shapes that add up worst; their "
+            "weight is the product of those of A and B.",
+        ),
+    ] = 0,
     animation: Annotated[
         bool,
         typer.Option("--animation", help="Add an animation that shows every shape (GLB, USD)."),
@@ -94,7 +105,7 @@ def rig(
     with talking(json=json, quiet=quiet, debug=debug) as talk:
         from risorius.cli.outputs import require_picture_output, require_rig_output
         from risorius.cli.sources import Given, bake_head, resolve
-        from risorius.cli.written import write_and_say, write_sheet
+        from risorius.cli.written import say_pairs, write_and_say, write_sheet
 
         target = require_rig_output(output)
         if sheet is not None:
@@ -117,8 +128,10 @@ def rig(
             mandible=mandible,
             skull_landmarks=skull_landmarks,
         )
-        baked = bake_head(resolve(head, given), talk)
+        baked = bake_head(resolve(head, given), talk, correctives=correctives)
         write_and_say(baked.rig, target, talk, animation=animation, metres=metres)
+        if correctives:
+            say_pairs(baked.pairs, talk)
         if sheet is not None:
             write_sheet(baked.rig, sheet, talk)
         talk.say_seconds()

@@ -14,6 +14,8 @@ from risorius.cli.talk import Talk
 from risorius.controls.shape_sets import ALL_SHAPE_SETS, SOLVED_SETS, ShapeList, list_shapes
 from risorius.errors import ParameterError
 from risorius.head.head import Head, HeadOptions
+from risorius.playback.pairs import CorrectivePair, find_pairs, with_pairs
+from risorius.playback.shape_names import set_of
 from risorius.playback.solved_sets import with_solved_sets
 from risorius.project import (
     BUILTIN,
@@ -165,10 +167,22 @@ class Baked:
 
     rig: Rig
     left_out: dict[str, str]
+    pairs: tuple[CorrectivePair, ...] = ()
 
 
-def bake_head(project: Project, talk: Talk, *, only: Sequence[str] | None = None) -> Baked:
+def bake_head(
+    project: Project, talk: Talk, *, only: Sequence[str] | None = None, correctives: int = 0
+) -> Baked:
     """Read a head, bind the method and bake its shapes, or `only` those named.
+
+    Parameters
+    ----------
+    project : Project
+    talk : Talk
+    only : sequence of str, optional
+        Shapes to bake; all of the project's sets if left out.
+    correctives : int
+        How many corrective pairs of ARKit shapes to add, of all shapes in a rig without ARKit.
 
     Raises
     ------
@@ -192,7 +206,13 @@ def bake_head(project: Project, talk: Talk, *, only: Sequence[str] | None = None
         shapes = _chosen(shapes, only)
     with talk.stage("bake") as tick:
         rig = bake(face, shapes.poses, left_out=shapes.left_out, progress=tick)
-    return Baked(rig, dict(shapes.left_out))
+    pairs: tuple[CorrectivePair, ...] = ()
+    if correctives:
+        with talk.stage("correctives") as tick:
+            wanted = {n: p for n, p in shapes.poses.items() if set_of(n) == "arkit"}
+            pairs = find_pairs(face, wanted or shapes.poses, budget=correctives, progress=tick)
+            rig = with_pairs(rig, pairs)
+    return Baked(rig, dict(shapes.left_out), pairs)
 
 
 def require_shapes(

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from risorius.cli.outputs import write_rig
 from risorius.cli.talk import Talk
+from risorius.playback.pairs import CorrectivePair
 from risorius.render.png import write_png
 from risorius.render.rig_sheet import rig_sheet
 from risorius.rig.rig import Rig
 
-__all__ = ["say_left_out", "size_of", "write_and_say", "write_sheet"]
+__all__ = ["say_left_out", "say_pairs", "size_of", "write_and_say", "write_sheet"]
 
 
 def write_and_say(
@@ -33,6 +35,22 @@ def say_left_out(rig: Rig, talk: Talk) -> None:
         talk.say(f"left out ({len(rig.left_out)}):")
         for name, reason in rig.left_out.items():
             talk.say(f"  {name}: {reason}")
+
+
+def say_pairs(pairs: Sequence[CorrectivePair], talk: Talk) -> None:
+    """Say what corrective pairs bring."""
+    rows = [(pair.first, pair.second, pair.before, pair.after) for pair in pairs]
+    talk.put(
+        correctives=[
+            {"first": a, "second": b, "before": before, "after": after}
+            for a, b, before, after in rows
+        ]
+    )
+    talk.say("correctives, and the error of the sum without and with them [mm]:")
+    talk.table(
+        ("pair", "without", "with"),
+        [(f"{a} + {b}", f"{before:.2f}", f"{after:.2f}") for a, b, before, after in rows],
+    )
 
 
 def write_sheet(rig: Rig, path: Path, talk: Talk) -> None:

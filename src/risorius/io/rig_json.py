@@ -11,6 +11,7 @@ import numpy as np
 
 from risorius._check import IntArray
 from risorius.controls.control import Control, ControlGroup
+from risorius.controls.pair_names import pair_of
 from risorius.errors import FormatError
 from risorius.head.frame import Frame
 from risorius.io.bounded import check_schema
@@ -63,6 +64,7 @@ def rig_to_json(rig: Rig) -> dict[str, Any]:
             if target.pose
         },
         "left_out": dict(rig.left_out),
+        "correctives": {name: list(pair) for name in rig.names if (pair := _pair(rig, name))},
         "parts": list(rig.part_names),
     }
     try:
@@ -72,6 +74,12 @@ def rig_to_json(rig: Rig) -> dict[str, Any]:
             "rig: frame, landmarks, controls or poses hold a number that is not finite"
         ) from None
     return document
+
+
+def _pair(rig: Rig, name: str) -> tuple[str, str] | None:
+    """Return the targets whose product drives a corrective; reading needs only its name."""
+    pair = pair_of(name)
+    return pair if pair and set(pair) <= set(rig.names) else None
 
 
 def rig_info(value: object, where: str) -> RigInfo:

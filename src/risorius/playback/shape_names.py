@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import cache
 
 from risorius.controls.arkit import arkit_shapes
+from risorius.controls.pair_names import pair_of
 from risorius.controls.presets import EMOTIONS
 from risorius.controls.standard_sets import STANDARD_SETS
-from risorius.playback.pairs import pair_of
 
 __all__ = ["TARGET_SETS", "set_of"]
 

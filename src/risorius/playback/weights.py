@@ -11,11 +11,11 @@ from risorius._check import FloatArray
 from risorius.controls.control import Pose
 from risorius.controls.fap import fap_number, faps
 from risorius.controls.head_turn import HEAD_TURNS
+from risorius.controls.pair_names import pair_of
 from risorius.controls.presets import PresetBook, default_presets
 from risorius.controls.standard import device_controls
 from risorius.controls.standard_sets import STANDARD_SETS
 from risorius.playback.fap_fit import FapFit
-from risorius.playback.pairs import pair_of
 from risorius.rig.rig import Rig
 
 __all__ = ["RigWeights"]
