@@ -16,7 +16,7 @@ Masses = Literal["stiffness", "unit"]
 Holding = Literal["tissue", "bone"]
 
 # Drag, as published; slow modes make a finer tolerance dear.
-_PUBLISHED_MOTION = LeapfrogParameters(kinetic=False, drag=0.1, tolerance=2e-3, step_limit=1500)
+_PUBLISHED_MOTION = LeapfrogParameters(kinetic=False, drag=0.1, tolerance=5e-3, step_limit=3000)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,7 +107,7 @@ class SpringParameters:
     holding: Holding = "bone"
     bone_stiffness: float = 0.1
     jaw_stiffness: float = 0.1
-    home: float = 0.0
+    home: float = 0.02
     tissue: float = 0.0
     carried: bool = False
     masses: Masses = "unit"

@@ -11,6 +11,7 @@ from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.skin import Skin
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.errors import ParameterError
+from risorius.mesh.boundary import boundary_loops
 from risorius.mesh.connectivity import edges
 from risorius.solvers.leapfrog import edge_forces
 from risorius.solvers.spring_stiffness import edge_stiffness
@@ -137,6 +138,7 @@ def build_springs(
     reach = np.linalg.norm(positions[vertices] - rest_feet, axis=1)
     bone_reach = np.linalg.norm(positions[bone_vertices] - bone_feet, axis=1)
     fixed = (skin.mobility <= 0.0) | (skin.mass <= 1e-9)
+    fixed[_neck(skin)] = True
     network = SpringNetwork(
         positions, pairs, (1.0 - p.pretension) * length, k,
         knee_lengths=(1.0 + p.knee_strain) * length, stiffening=p.stiffening,
@@ -151,6 +153,14 @@ def build_springs(
         skin, network, vertices, segments, numbers, feet, partners, rest_feet, stiffness, shares,
         bone_vertices, bone_feet, on_jaw, np.tile(bone_stiffness, both), tissue,
     )  # fmt: skip
+
+
+def _neck(skin: Skin) -> IntArray:
+    """Return the rim (r,) of the neck, the lowest hole of the skin; it must not move (finding S9)."""
+    loops = boundary_loops(skin.mesh.faces)
+    if not loops:
+        return np.zeros(0, np.int32)
+    return min(loops, key=lambda loop: float(skin.positions[loop, 1].mean()))
 
 
 def _counted(skin: Skin, p: SpringParameters) -> FloatArray:
