@@ -24,6 +24,8 @@ VERBS = [
     ["tune"],
     ["play"],
     ["convert"],
+    ["blend"],
+    ["compress"],
     ["landmarks"],
     ["bench"],
     ["project", "new"],

@@ -9,9 +9,11 @@ import typer
 from risorius import __version__
 from risorius.cli import (
     bench,
+    blend,
     check,
     clone,
     compare,
+    compress,
     convert,
     demo,
     inspect,
@@ -74,6 +76,8 @@ app.command("transfer")(transfer.transfer)
 app.command("tune")(tune.tune)
 app.command("play")(play.play)
 app.command("convert")(convert.convert)
+app.command("blend")(blend.blend)
+app.command("compress")(compress.compress)
 app.command("landmarks")(landmarks.landmarks)
 app.command("bench")(bench.bench)
 app.add_typer(project.app, name="project")

@@ -135,6 +135,14 @@ def _basis(rig: Rig) -> npt.NDArray[np.intp]:
     """Return the targets of the first set that is rich enough, else all that move."""
     kinds = [set_of(target.name) if len(target.vertices) else "" for target in rig.targets]
     kinds = ["" if kind == "pairs" else kind for kind in kinds]
+    if rig.controls:
+        # What a person named freely is no single, where the rig knows its controls.
+        singles = {control.name for control in rig.controls}
+        singles |= {f"{name}_neg" for name in singles}
+        kinds = [
+            "own" if kind == "singles" and name not in singles else kind
+            for kind, name in zip(kinds, rig.names)
+        ]
     for wanted in _PREFERENCE:
         found = np.flatnonzero([kind == wanted for kind in kinds])
         if len(found) >= _ENOUGH:

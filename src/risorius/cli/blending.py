@@ -1,0 +1,91 @@
+"""Write blends of emotions: as a stream, or as a preset."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from risorius.cli.outputs import require_json_output
+from risorius.cli.talk import Talk
+from risorius.controls.control import Pose
+from risorius.controls.presets import EMOTIONS, parse_presets
+from risorius.controls.standard import (
+    MUSCLES,
+    SINGLE_MUSCLES,
+    controls_of_muscles,
+    device_controls,
+    sided,
+)
+from risorius.errors import ParameterError
+from risorius.io.atomic import write_bytes
+from risorius.io.bounded import parse_json, read_json
+from risorius.io.motion import write_stream
+from risorius.playback.emotion_timing import Timing, blended_pose, emotion_stream
+
+__all__ = ["write_blend", "write_preset"]
+
+
+def write_blend(
+    intensities: Mapping[str, float], timing: Timing, rate: float, path: Path, talk: Talk
+) -> None:
+    """Write the stream of emotions that come, stay and go, and say so.
+
+    Raises
+    ------
+    RisoriusError
+        If an emotion is unknown, a number out of range, or the file cannot be written.
+    """
+    stream = emotion_stream(intensities, timing=timing, rate=rate)
+    count = write_stream(stream, path)
+    talk.put(output=path, frames=count, rate=rate, duration=timing.duration)
+    talk.say(f"wrote {path}: {count} frames, {timing.duration:.2f} s")
+
+
+def write_preset(
+    intensities: Mapping[str, float], name: str, base: Path | None, path: Path, talk: Talk
+) -> None:
+    """Write the presets of `base` (those that ship if None) with a blend as one more expression.
+
+    Raises
+    ------
+    RisoriusError
+        If an emotion or a number is refused, the name is taken, or a file cannot be read or
+        written.
+    """
+    require_json_output(path)
+    if not name.isidentifier():
+        raise ParameterError(
+            f"preset: {name!r} is no name of a shape; use letters, digits and _, such as delight"
+        )
+    document = _document(base)
+    book = parse_presets(document, source=str(base or "presets.json"))
+    if name in EMOTIONS or name in book.arkit:
+        raise ParameterError(f"preset: {name!r} is the name of a standard shape; choose another")
+    muscles = (*SINGLE_MUSCLES, *(full for muscle in MUSCLES for full in sided(muscle)))
+    controls = (*controls_of_muscles(muscles), *device_controls())
+    pose = _short(blended_pose(book, intensities, controls))
+    document["emotions"] = {**document.get("emotions", {}), name: pose}
+    write_bytes(path, (json.dumps(document, indent=1, ensure_ascii=False) + "\n").encode())
+    talk.put(output=path, preset=name, pose=pose)
+    talk.say(f"wrote {path}: {name} of {len(pose)} controls; risorius rig HEAD --presets {path}")
+
+
+def _document(base: Path | None) -> dict[str, Any]:
+    if base is not None:
+        return read_json(base, schema="risorius/presets")
+    text = files("risorius.controls").joinpath("data/presets.json").read_bytes()
+    return parse_json(text, "presets.json")
+
+
+def _short(pose: Pose) -> dict[str, float]:
+    """Return the pose with equal sides under one name, as people write presets."""
+    result: dict[str, float] = {}
+    for name, value in pose.items():
+        base, side = (name[:-2], name[-2:]) if name.endswith(("_l", "_r")) else (name, "")
+        other = f"{base}{'_r' if side == '_l' else '_l'}"
+        paired = bool(side) and pose.get(other) == value
+        result[base if paired else name] = round(value, 4)
+    return result
