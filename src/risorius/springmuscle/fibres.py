@@ -131,13 +131,12 @@ def ring_aims(points: FloatArray, ring: Ring, layer: Layer) -> FloatArray:
     its ends through the centre, as lids close to a line and not to a point (finding S6).
     """
     surface, parameters = layer.surface, layer.parameters
-    centre = ring.centre.place(surface.measure)
-    if parameters.ahead:
-        centre = centre + [0.0, 0.0, ring.ahead * surface.scale]
+    ahead = np.array([0.0, 0.0, ring.ahead * surface.scale if parameters.ahead else 0.0])
+    centre = ring.centre.place(surface.measure) + ahead
     aims = np.tile(centre, (len(points), 1))
     if not (ring.line and parameters.lines):
         return aims
-    left, right = (point.place(surface.measure) for point in ring.line)
+    left, right = (point.place(surface.measure) + ahead for point in ring.line)
     place = points[:, 0] - centre[0]
     ends = np.where(place[:, None] > 0.0, left, right)
     span = ends[:, 0] - centre[0]
