@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from risorius._check import FloatArray, as_number, one_of
+from risorius._check import FloatArray, IntArray, as_number, one_of
 from risorius.errors import ParameterError, SolverError
 from risorius.solvers.kernels.simd import PACK
 from risorius.solvers.kernels.spring_packs import leapfrog_packs
@@ -182,11 +182,12 @@ def _run(
 def scalar_tables(network: SpringNetwork, control: SpringControl) -> SpringTables:
     """Return what the reference kernel reads."""
     given = control.resolved(network)
+    taut = _taut(given)
     return SpringTables(
         network.edges, given["rest_lengths"], given["knee_lengths"], network.stiffness,
-        network.stiffening, network.anchored, given["anchors"], network.anchor_lengths,
-        given["anchor_stiffness"], given["hold_targets"], given["hold_stiffness"], given["load"],
-        network.inv_mass,
+        network.stiffening, network.anchored[taut], given["anchors"][taut],
+        network.anchor_lengths[taut], given["anchor_stiffness"][taut], given["hold_targets"],
+        given["hold_stiffness"], given["load"], network.inv_mass,
     )  # fmt: skip
 
 
@@ -266,16 +267,27 @@ class PackedRun:
     def _tables_of(self, control: SpringControl) -> PackTables:
         network, layout = self._network, self._network.layout
         given = control.resolved(network)
-        anchors = given["anchors"] - self._centre
+        taut = _taut(given)
+        k = given["anchor_stiffness"][taut]
+        anchor_start, anchor_rows = layout.anchor_fields(
+            network.anchored[taut], *(given["anchors"][taut] - self._centre).T, k,
+            k * network.anchor_lengths[taut],
+        )  # fmt: skip
+        edge = [network.stiffness, network.stiffness * given["rest_lengths"]]
+        if network.stiffening > 0.0:
+            edge.append(given["knee_lengths"])
         return PackTables(
-            layout.edge_start, layout.neighbours,
-            layout.edge_fields(given["rest_lengths"], given["knee_lengths"], network.stiffness),
-            np.array([network.stiffening], np.float32), layout.anchor_start,
-            layout.anchor_fields(*anchors.T, network.anchor_lengths, given["anchor_stiffness"]),
+            layout.edge_start, layout.neighbours, layout.edge_fields(*edge),
+            np.array([network.stiffening], np.float32), anchor_start, anchor_rows,
             layout.vectors(given["hold_targets"] - self._centre),
             layout.scalars(given["hold_stiffness"]), layout.vectors(given["load"]),
             layout.scalars(network.inv_mass), layout.own_rows(),
         )  # fmt: skip
+
+
+def _taut(given: dict[str, FloatArray]) -> IntArray:
+    """Return which anchor springs (t,) pull at all."""
+    return np.flatnonzero(given["anchor_stiffness"] > 0.0).astype(np.int32)
 
 
 def _require_finite(

@@ -43,8 +43,9 @@ class PackTables(NamedTuple):
     """What the packed kernel reads, flat and in float32.
 
     Particles stand in blocks of `PACK`; `*_start` gives the first slot of each block, and the
-    end. A slot holds one spring of each particle of the block: first their `PACK` rest lengths,
-    then the next field. What fills up a slot has stiffness 0.
+    end. A slot holds one spring of each particle of the block: first `PACK` numbers of one kind,
+    then the next field: stiffness, stiffness times rest length, knee length of an edge; place,
+    stiffness, stiffness times rest length of an anchor. What fills up a slot has stiffness 0.
     """
 
     edge_start: Table
@@ -68,26 +69,25 @@ class PackLayout:
     ----------
     order : (n,) int32
         Particles in the order of the blocks: neighbours near each other, and among those the ones
-        with the most springs first, so that the particles of a block have about as many.
+        with the most edges first, so that the particles of a block have about as many.
+    rank : (n,) int64
+        Place of each particle in this order.
     block_count : int
-    edge_start, anchor_start : (b + 1,) int64
+    edge_start : (b + 1,) int64
         First slot of each block.
     neighbours : (slots * PACK,) uint32
         Row of the other end of each edge.
     edge_place : (2 e,) int64
         Entry of each edge, seen from its first ends and then from its second ends: slot * PACK +
         lane.
-    anchor_place : (a,) int64
-        The same of each anchor spring.
     """
 
     order: IntArray
+    rank: npt.NDArray[np.int64]
     block_count: int
     edge_start: npt.NDArray[np.int64]
-    anchor_start: npt.NDArray[np.int64]
     neighbours: npt.NDArray[np.uint32]
     edge_place: npt.NDArray[np.int64]
-    anchor_place: npt.NDArray[np.int64]
 
     @property
     def padded_count(self) -> int:
@@ -125,35 +125,39 @@ class PackLayout:
         """Return numbers (e,) of the edges side by side as the kernel keeps them."""
         return _fields([np.tile(field, 2) for field in fields], self.edge_place, self.edge_start)
 
-    def anchor_fields(self, *fields: FloatArray) -> Table:
-        """Return numbers (a,) of the anchor springs side by side as the kernel keeps them."""
-        return _fields(list(fields), self.anchor_place, self.anchor_start)
+    def anchor_fields(
+        self, anchored: IntArray, *fields: FloatArray
+    ) -> tuple[npt.NDArray[np.int64], Table]:
+        """Return first slots (b + 1,) and numbers (a,) of anchor springs as the kernel keeps them.
+
+        `anchored` (a,) are their particles; laid out anew each time, since most of the springs of
+        a network may be slack.
+        """
+        place, start = _slots(self.rank[anchored], self.block_count)
+        return start, _fields(list(fields), place, start)
 
     def own_rows(self) -> Table:
         """Return the row (padded,) of each particle, in entries."""
         return (4 * np.arange(self.padded_count)).astype(np.uint32)
 
 
-def pack_layout(edges: IntArray, anchored: IntArray, particle_count: int) -> PackLayout:
-    """Lay out `edges` (e, 2) and the springs of the particles `anchored` (a,)."""
+def pack_layout(edges: IntArray, particle_count: int) -> PackLayout:
+    """Lay out `edges` (e, 2) between so many particles."""
     ends = edges.T.ravel()
     degree = np.bincount(ends, minlength=particle_count)
-    hung = np.bincount(anchored, minlength=particle_count)
     near = _near_order(edges, particle_count)
     window = np.arange(particle_count) // _WINDOW
-    order = near[np.lexsort((-degree[near], -hung[near], window))]
+    order = near[np.lexsort((-degree[near], window))]
     rank = np.empty(particle_count, np.int64)
     rank[order] = np.arange(particle_count)
     blocks = max(1, -(-particle_count // PACK))
     edge_place, edge_start = _slots(rank[ends], blocks)
-    anchor_place, anchor_start = _slots(rank[anchored], blocks)
     # What fills up a slot is an edge from a particle to itself.
     own = np.arange(blocks * PACK).reshape(blocks, PACK)
     neighbours = np.repeat(own, np.diff(edge_start), axis=0).ravel()
     neighbours[edge_place] = rank[edges[:, ::-1].T.ravel()]
     return PackLayout(
-        order, blocks, edge_start, anchor_start, (4 * neighbours).astype(np.uint32), edge_place,
-        anchor_place,
+        order, rank, blocks, edge_start, (4 * neighbours).astype(np.uint32), edge_place
     )  # fmt: skip
 
 

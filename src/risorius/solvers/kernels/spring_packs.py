@@ -10,28 +10,44 @@ import math
 
 from numba import njit
 
-from risorius.solvers.kernels.formulas import FLAGS, measure_distance
+from risorius.solvers.kernels.formulas import FLAGS
 from risorius.solvers.kernels.memory import gather, lane_sum, load_pack, scatter, store
-from risorius.solvers.kernels.simd import PACK, larger
+from risorius.solvers.kernels.simd import PACK, larger, reciprocal_root
 
 __all__ = ["leapfrog_packs"]
 
 _ROW = 3 * PACK
-_EDGE = 3 * PACK
+_EDGE, _BIPHASIC = 2 * PACK, 3 * PACK
 _ANCHOR = 5 * PACK
+# Keeps the reciprocal of a length 0 finite; the vector that it multiplies is 0 there.
+_TINY = 1e-24
 
 
 @njit(**{**FLAGS, "forceinline": True})
 def _pull_of_edges(t, rows, block, x, y, z, fx, fy, fz):
+    """Add what linear edges exert: ``k (L - L0) / L = k - k L0 / L``, which needs no L."""
     for slot in range(t.edge_start[block], t.edge_start[block + 1]):
         ox, oy, oz, _ = gather(rows, t.neighbours, slot * PACK)
-        dx, dy, dz, length, per_length = measure_distance(x, y, z, ox, oy, oz)
-        rest = load_pack(t.edge_rows, slot * _EDGE)
-        knee = load_pack(t.edge_rows, slot * _EDGE + PACK)
-        stiffness = load_pack(t.edge_rows, slot * _EDGE + 2 * PACK)
-        beyond = length - knee
-        beyond = larger(beyond, beyond * 0.0)
-        pull = stiffness * (length - rest + t.stiffening[0] * beyond) * per_length
+        dx, dy, dz, per_length = _apart(x, y, z, ox, oy, oz)
+        row = slot * _EDGE
+        pull = load_pack(t.edge_rows, row) - load_pack(t.edge_rows, row + PACK) * per_length
+        fx = fx - pull * dx
+        fy = fy - pull * dy
+        fz = fz - pull * dz
+    return fx, fy, fz
+
+
+@njit(**{**FLAGS, "forceinline": True})
+def _pull_of_biphasic_edges(t, rows, block, x, y, z, fx, fy, fz):
+    """As `_pull_of_edges`, plus ``s k max(1 - L1 / L, 0)`` beyond the knees L1."""
+    for slot in range(t.edge_start[block], t.edge_start[block + 1]):
+        ox, oy, oz, _ = gather(rows, t.neighbours, slot * PACK)
+        dx, dy, dz, per_length = _apart(x, y, z, ox, oy, oz)
+        row = slot * _BIPHASIC
+        stiffness = load_pack(t.edge_rows, row)
+        pull = stiffness - load_pack(t.edge_rows, row + PACK) * per_length
+        beyond = 1.0 - load_pack(t.edge_rows, row + 2 * PACK) * per_length
+        pull = pull + t.stiffening[0] * stiffness * larger(beyond, beyond * 0.0)
         fx = fx - pull * dx
         fy = fy - pull * dy
         fz = fz - pull * dz
@@ -42,17 +58,23 @@ def _pull_of_edges(t, rows, block, x, y, z, fx, fy, fz):
 def _pull_of_anchors(t, block, x, y, z, fx, fy, fz):
     for slot in range(t.anchor_start[block], t.anchor_start[block + 1]):
         row = slot * _ANCHOR
-        ax = load_pack(t.anchor_rows, row)
-        ay = load_pack(t.anchor_rows, row + PACK)
-        az = load_pack(t.anchor_rows, row + 2 * PACK)
-        dx, dy, dz, length, per_length = measure_distance(x, y, z, ax, ay, az)
-        rest = load_pack(t.anchor_rows, row + 3 * PACK)
-        stiffness = load_pack(t.anchor_rows, row + 4 * PACK)
-        pull = stiffness * (length - rest) * per_length
+        ax, ay, az = _place(t.anchor_rows, row)
+        dx, dy, dz, per_length = _apart(x, y, z, ax, ay, az)
+        row += 3 * PACK
+        pull = load_pack(t.anchor_rows, row) - load_pack(t.anchor_rows, row + PACK) * per_length
         fx = fx - pull * dx
         fy = fy - pull * dy
         fz = fz - pull * dz
     return fx, fy, fz
+
+
+@njit(**{**FLAGS, "forceinline": True})
+def _apart(ax, ay, az, bx, by, bz):
+    """Return the vector from b to a and the reciprocal of its length."""
+    x = ax - bx
+    y = ay - by
+    z = az - bz
+    return x, y, z, reciprocal_root(x * x + (y * y + (z * z + _TINY)))
 
 
 @njit(**{**FLAGS, "forceinline": True})
@@ -85,7 +107,10 @@ def _forces(rows, x, v, t, forces, peak):
         fx = fx - held * (px - hx)
         fy = fy - held * (py - hy)
         fz = fz - held * (pz - hz)
-        fx, fy, fz = _pull_of_edges(t, rows, block, px, py, pz, fx, fy, fz)
+        if t.stiffening[0] > 0.0:
+            fx, fy, fz = _pull_of_biphasic_edges(t, rows, block, px, py, pz, fx, fy, fz)
+        else:
+            fx, fy, fz = _pull_of_edges(t, rows, block, px, py, pz, fx, fy, fz)
         fx, fy, fz = _pull_of_anchors(t, block, px, py, pz, fx, fy, fz)
         _put(forces, row, fx, fy, fz)
         w = load_pack(t.inv_mass, block * PACK)

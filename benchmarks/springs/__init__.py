@@ -1,0 +1,1 @@
+"""How fast the spring-muscle face builds, poses and runs live."""
