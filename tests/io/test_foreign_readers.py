@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
+from scipy.spatial.transform import Rotation
 
 from risorius.io.gltf import write_glb
 from risorius.io.obj import read_obj
+from risorius.io.track import TurnTrack, WeightTrack
 from risorius.mesh.polygon_mesh import PolygonMesh
 from risorius.rig.rig import MorphTarget, Rig
 from tests.io.browser import three_page
@@ -86,6 +88,42 @@ def test_three_shows_names_poses_and_animation(tmp_path: Path):
     assert (np.abs(before - after).max(axis=2) > 20).mean() > 0.01
     for weights_of_mesh in played:
         assert weights_of_mesh in ([], pytest.approx([0.0, 1.0, 0.0], abs=1e-6))
+
+
+def _turning_track(rig: Rig) -> WeightTrack:
+    """Return a track in which the head turns by a right angle while the second shape comes."""
+    weights = np.zeros((3, len(rig.targets)), np.float32)
+    weights[1:, 1] = (0.5, 1.0)
+    rotations = Rotation.from_rotvec(np.outer([0.0, 0.25, 0.5], [0.0, np.pi, 0.0])).as_quat()
+    return WeightTrack(
+        np.array([0.0, 1.0, 2.0]), weights, "take", TurnTrack(np.array([0.3, -0.2, 0.5]), rotations)
+    )
+
+
+def test_three_turns_the_head_about_the_joint_while_shapes_play(tmp_path: Path):
+    rig = make_rig()
+    track = _turning_track(rig)
+    write_glb(rig, tmp_path / "a.glb", track=track)
+    with three_page(tmp_path / "a.glb") as page:
+        shown = [
+            page.evaluate("seconds => placed(seconds)", seconds) for seconds in (0.0, 1.0, 1.5)
+        ]
+    turns = track.turns
+    assert turns is not None
+    for found, share in zip(shown, (0.0, 0.5, 0.75)):
+        rotation = Rotation.from_rotvec([0.0, 0.5 * np.pi * share, 0.0])
+        posed = rig.posed({rig.names[1]: share})
+        expected = rotation.apply(posed - turns.pivot) + turns.pivot
+        used = [int(vertex) for vertex in found]
+        np.testing.assert_allclose(list(found.values()), expected[used], atol=1e-5)
+
+
+def test_the_validator_accepts_a_head_that_turns(tmp_path: Path):
+    rig = make_rig()
+    files = [tmp_path / "a.glb", tmp_path / "b.glb"]
+    for file, metres in zip(files, (False, True)):
+        write_glb(rig, file, track=_turning_track(rig), metres=metres)
+    assert all(report["info"]["animationCount"] == 1 for report in validated(files))
 
 
 def test_metres_reach_three_upright(tmp_path: Path):

@@ -78,20 +78,36 @@ class FapShape:
 
 @dataclass(frozen=True, eq=False)
 class FapShapes:
-    """Solved shapes of a face and what it cannot do."""
+    """Solved shapes of a face and what it cannot do.
+
+    Parameters
+    ----------
+    shapes : tuple of FapShape
+    left_out : dict of str to str
+        Shapes that there are not, or in part, with the reason.
+    turns : tuple of int
+        Parameters that are no shape and are made all the same: players turn the whole head.
+    """
 
     shapes: tuple[FapShape, ...]
     left_out: dict[str, str]
+    turns: tuple[int, ...] = ()
 
     @property
     def made_count(self) -> int:
         """Number of parameters of the 66 that are made in at least one direction."""
-        return len({shape.number for shape in self.shapes if shape.made})
+        return len({shape.number for shape in self.shapes if shape.made} | {*self.turns})
 
     @property
     def full_count(self) -> int:
         """Number of parameters that reach 100 units in at least one direction."""
-        return len({shape.number for shape in self.shapes if shape.full})
+        return len({shape.number for shape in self.shapes if shape.full} | {*self.turns})
+
+    @property
+    def bound_count(self) -> int:
+        """Number of parameters that reach their sane bound in at least one direction."""
+        bounds = {s.number for s in self.shapes if s.residual_at_bound <= _TOLERANCE}
+        return len(bounds | {*self.turns})
 
     def poses(self, *, thesis: bool = False) -> dict[str, Pose]:
         """Return the poses that are made, by target name.
@@ -162,7 +178,9 @@ def solve_fap_shapes(
             if not shape.full:
                 part = " (in part)" if shape.made else ""
                 left_out[shape.name + part] = f"the face makes {shape.reach:.0f} of 100 units"
-    return FapShapes(tuple(shapes), left_out)
+    turns = tuple(n for n, fap in faps().items() if fap.turns_head)
+    turns = tuple(n for n in turns if numbers is None or n in numbers)
+    return FapShapes(tuple(shapes), left_out, turns)
 
 
 def _model(face: Face, reading: FapReading) -> _Model:
