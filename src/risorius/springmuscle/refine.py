@@ -180,6 +180,11 @@ def refine(layout: Layout, layer: Layer, patch: Patch, *, mirror: bool) -> Refin
         pass
     for _ in range(parameters.settle):
         _settle(work)
+    if parameters.settle:
+        work.renew_normals()
+        work.measure()
+        work.remember()
+        work.recall()
     return _finished(work)
 
 
@@ -308,6 +313,7 @@ def _settle(work: _Work) -> None:
     """Move every point along its normal to the middle of what its cells leave it."""
     work.renew_normals()
     low, high = work.measure()
+    work.remember()
     known = work.cells.counts[..., 1] > 0
     excess = 0.5 * (work.cells.near + work.cells.far - low - high)
     out = np.maximum(low - work.cells.near, work.cells.far - high)

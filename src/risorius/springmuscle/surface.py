@@ -32,6 +32,8 @@ _SMOOTHING = 8
 # Outside is told from a capsule inside the head: its ends above the chin and the brows, and how
 # far it lies behind the eye corners in widths of the face.
 _LOW, _HIGH, _BEHIND = 8.0, 15.0, 0.75
+# The neck begins so far behind the chin, in widths of the face; how fast the capsule grows there.
+_NECK, _STEEP = 0.35, 2.0
 # Outlines are looked for from this far outside [mm at the reference width].
 _START, _REACH = 50.0, 120.0
 
@@ -131,9 +133,12 @@ class SkinSurface:
         """
         marks, scale = self.measure.landmarks, self.scale
         brow = max(float(marks[name][1]) for name in ("3.7", "4.1") if name in marks)
-        chin = float(marks["2.1"][1])
+        chin, width = marks["2.1"], self.measure.width
+        # Behind the chin the axis goes on down the neck.
+        neck = np.maximum(chin[2] - _NECK * width - points[:, 2], 0.0)
+        low = chin[1] + _LOW * scale - _STEEP * neck
         centre = np.zeros_like(points)
-        centre[:, 1] = np.clip(points[:, 1], chin + _LOW * scale, brow + _HIGH * scale)
+        centre[:, 1] = np.clip(points[:, 1], low, brow + _HIGH * scale)
         centre[:, 2] = float(marks["3.7"][2]) - _BEHIND * self.measure.width
         return unit(points - centre)
 
