@@ -1,13 +1,17 @@
 from __future__ import annotations
 
+import tracemalloc
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from risorius.controls.stream import Stream, StreamFrame
 from risorius.errors import FormatError, ShapeError
 from risorius.io.gltf import WeightTrack, write_glb
 from risorius.io.gltf.write import glb_bytes
+from risorius.playback.head_turn import HeadJoint
 from risorius.playback.player import Player
 from risorius.rig import Rig
 from tests.io.glb import unpack, values
@@ -54,3 +58,27 @@ def test_tracks_of_wrong_shape_or_falling_times_are_refused() -> None:
     track = WeightTrack(np.array([0.0]), np.zeros((1, 3), np.float32))
     with pytest.raises(ShapeError, match="weights of 3 targets"):
         glb_bytes(played_rig(), "x.glb", track=track)
+
+
+def test_positions_are_those_of_the_weights_and_take_no_memory_with_time() -> None:
+    rig = played_rig().subset(["jawOpen", "joy", "browInnerUp"])
+    count = 5000
+
+    def frames() -> Iterator[StreamFrame]:
+        for number in range(count):
+            yield StreamFrame(number / 60.0, {"jawOpen": (number % 50) / 50, "head_yaw": 2.0})
+
+    player = Player(rig, Stream("made up", 60.0, ("jawOpen", "head_yaw"), frames))
+    peaks: list[int] = []
+    tracemalloc.start()
+    for number, posed in enumerate(player.positions()):
+        if number % 1000 == 999:
+            peaks.append(tracemalloc.get_traced_memory()[1])
+            tracemalloc.reset_peak()
+        if number == 25:
+            joint = HeadJoint.of_rig(rig)
+            wanted = joint.turned(rig.posed({"jawOpen": 0.5}), {"head_yaw": 2.0})
+            np.testing.assert_allclose(posed, wanted, atol=1e-3)
+    tracemalloc.stop()
+    assert len(peaks) == 5
+    assert max(peaks[1:]) < 1.02 * peaks[1] + 1e4

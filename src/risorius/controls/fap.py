@@ -14,7 +14,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from types import MappingProxyType
 from typing import Literal, cast
 
@@ -125,6 +125,7 @@ def fap_name(number: int) -> str:
     return f"fap_{number}"
 
 
+@lru_cache(4096)
 def fap_number(name: str) -> int | None:
     """Return the number behind ``fap_3``, or None if `name` is no low-level parameter."""
     match = _NAME.fullmatch(name)

@@ -14,10 +14,13 @@ from risorius.rig.rig import Rig
 __all__ = ["Poser"]
 
 _BLOCK = 32
+_MOST = 0.6  # share of vertices that move from which on it is quicker to pose all of them
 
 
 class Poser:
-    """Neutral and targets of a rig as dense tables, in float32, of the vertices that ever move.
+    """Neutral and targets of a rig as dense tables, in float32.
+
+    The tables hold the vertices that ever move (`vertices`), or all where most do.
 
     Parameters
     ----------
@@ -32,6 +35,8 @@ class Poser:
     def __init__(self, rig: Rig) -> None:
         used = [target.vertices for target in rig.targets]
         self.vertices = np.unique(np.concatenate(used)) if used else np.zeros(0, np.int32)
+        if len(self.vertices) > _MOST * rig.mesh.vertex_count:
+            self.vertices = np.arange(rig.mesh.vertex_count, dtype=np.int32)
         self.neutral = rig.mesh.positions.astype(np.float32)
         self._table = np.zeros((len(rig.targets), 3 * len(self.vertices)), np.float32)
         for row, target in enumerate(rig.targets):
@@ -40,7 +45,7 @@ class Poser:
         self._rest = self.neutral[self.vertices].ravel()
 
     def block(self, weights: npt.ArrayLike) -> npt.NDArray[np.float32]:
-        """Return the positions (b, m, 3) of the vertices that ever move, for weights (b, t)."""
+        """Return the positions (b, m, 3) of `vertices` for weights (b, t)."""
         rows = np.asarray(weights, np.float32)
         if rows.ndim != 2 or rows.shape[1] != len(self._table):
             raise ShapeError(f"weights: expected shape (b, {len(self._table)}), got {rows.shape}")
@@ -64,7 +69,11 @@ class Poser:
             yield from self._whole(waiting)
 
     def _whole(self, rows: list[FloatArray]) -> Iterator[npt.NDArray[np.float32]]:
-        for moved in self.block(np.stack(rows)):
+        block = self.block(np.stack(rows))
+        if len(self.vertices) == len(self.neutral):
+            yield from block
+            return
+        for moved in block:
             positions = self.neutral.copy()
             positions[self.vertices] = moved
             yield positions
