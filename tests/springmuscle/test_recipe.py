@@ -63,6 +63,7 @@ def _outlines(draw) -> MuscleOutline:
             draw(_points()),
             ahead=draw(st.floats(-20, 20)),
             line=draw(st.sampled_from(((), ROWS[0]))),
+            turn=0.0,
             around_eye=draw(st.booleans()),
             closed=draw(st.booleans()),
             shares=draw(st.sampled_from(((), shares))),

@@ -128,7 +128,8 @@ def ring_aims(points: FloatArray, ring: Ring, layer: Layer) -> FloatArray:
     """Return where the points (p, 3) of a sphincter are drawn to.
 
     The centre, moved ahead of the lips; or the nearest place, sideways, on a line that bends from
-    its ends through the centre, as lids close to a line and not to a point (finding S6).
+    its ends through the centre, as lids close to a line and not to a point (finding S6); or their
+    own places turned about that line.
     """
     surface, parameters = layer.surface, layer.parameters
     ahead = np.array([0.0, 0.0, ring.ahead * surface.scale if parameters.ahead else 0.0])
@@ -143,4 +144,16 @@ def ring_aims(points: FloatArray, ring: Ring, layer: Layer) -> FloatArray:
     share = np.clip(place / np.where(span == 0.0, 1.0, span), 0.0, 1.0)
     aims[:, 0] = centre[0] + share * span
     aims[:, 1:] = centre[1:] + (ends[:, 1:] - centre[1:]) * (share**2)[:, None]
-    return aims
+    return _turned(points, aims, np.radians(ring.turn)) if ring.turn else aims
+
+
+def _turned(points: FloatArray, axis: FloatArray, angle: float) -> FloatArray:
+    """Return `points` (p, 3) turned about the horizontal axes through `axis` (p, 3), front down.
+
+    Along the tangent: fibres go straight to their aims, a circle would carry the lip backwards.
+    """
+    turned = points.copy()
+    up, ahead = (points - axis)[:, 1:].T
+    turned[:, 1] -= angle * ahead
+    turned[:, 2] += angle * up
+    return turned

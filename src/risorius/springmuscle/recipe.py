@@ -87,6 +87,9 @@ class Ring:
     line : tuple of OutlinePoint
         Left and right end of a line that bends through the centre; each point of the ring is
         drawn to the part of the line nearest to it, as lids are (finding S6). Empty for a point.
+    turn : float
+        Instead of drawing its points to the line, turn them about it by so much at contraction 1,
+        the front going down [deg]: how a lip rolls over the teeth. Needs a line.
     around_eye : bool
         Whether the fibres slide around the eyeball of their side.
     closed : bool
@@ -98,6 +101,7 @@ class Ring:
     centre: OutlinePoint
     ahead: float = 0.0
     line: tuple[OutlinePoint, ...] = ()
+    turn: float = 0.0
     around_eye: bool = False
     closed: bool = True
     shares: tuple[float, ...] = ()
@@ -178,6 +182,8 @@ class MuscleOutline:
             raise ParameterError(
                 f"{where}: a sphincter needs a ring with a centre, and only a sphincter has one"
             )
+        if self.ring is not None and self.ring.turn and not self.ring.line:
+            raise ParameterError(f"{where}: turns about a line, but has none; give its ends")
         shares = self.ring.shares if self.ring else ()
         if shares and len(shares) != len(self.rows):
             raise ParameterError(

@@ -32,7 +32,7 @@ _KINDS = ("linear", "sheet", "curved", "sphincter")
 _MOST_CONTRACTION = 1.0
 # Lengths beyond this are no lengths of a face [mm at the reference width].
 _LONGEST = 50.0
-_RING_DEFAULTS = {"ahead": 0.0, "around_eye": False, "closed": True}
+_RING_DEFAULTS = {"ahead": 0.0, "turn": 0.0, "around_eye": False, "closed": True}
 
 
 def parse_recipe(data: Mapping[str, Any], *, source: str) -> OutlineRecipe:
@@ -153,6 +153,7 @@ def _read_ring(record: Fields) -> Ring:
         centre=_read_point(record.value["centre"], record.place("centre")),
         ahead=_number(record, "ahead", 0.0, -_LONGEST, _LONGEST),
         line=line,
+        turn=_number(record, "turn", 0.0, -90.0, 90.0),
         around_eye=_flag(record, "around_eye", False),
         closed=_flag(record, "closed", True),
         shares=tuple(
@@ -221,6 +222,7 @@ def _text(outline: MuscleOutline) -> str:
             "centre": _point(ring.centre),
             "ahead": ring.ahead,
             "line": [_point(point) for point in ring.line],
+            "turn": ring.turn,
             "around_eye": ring.around_eye,
             "closed": ring.closed,
             "shares": list(ring.shares),
