@@ -39,6 +39,8 @@ class SpringParameters:
         Floors of edges in terms of their medians (finding S2).
     lid_softness : float
         Stiffness of the edges in the lids over that of others.
+    across : float
+        Stiffness of springs from the lining of mouth and sockets to the skin in front of it.
     muscle_stiffness : float
         Of a spring from skin to muscle.
     mirrors : bool
@@ -95,6 +97,7 @@ class SpringParameters:
     least_length: float = 0.3
     least_stiffness: float = 0.1
     lid_softness: float = 1.0
+    across: float = 0.0
     muscle_stiffness: float = 0.1
     mirrors: bool = True
     grip: float = 0.0
@@ -122,7 +125,8 @@ class SpringParameters:
             raise ParameterError(f"pretension: {pretension:g} must be below 1, edges keep a length")
         for name in (
             "knee_strain", "stiffening", "least_length", "least_stiffness", "lid_softness",
-            "muscle_stiffness", "grip", "waking", "bone_stiffness", "jaw_stiffness", "home", "tissue",
+            "across", "muscle_stiffness", "grip", "waking", "bone_stiffness", "jaw_stiffness",
+            "home", "tissue",
         ):  # fmt: skip
             as_number(name, getattr(self, name), low=0.0)
         as_number("resting", self.resting, low=0.0, high=1.0)
@@ -146,6 +150,7 @@ PROFILES: dict[str, SpringParameters] = {
         pretension=0.7,
         stiffening=0.0,
         lid_softness=0.3,
+        across=0.5,
         muscle_stiffness=0.1,
         grip=0.3,
         resting=0.0,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import cKDTree
 
 from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.skin import Skin
@@ -28,6 +29,10 @@ __all__ = ["SkinSprings", "build_springs"]
 _AREA = 8.0
 # Skin over a muscle that needs no reach; how far behind a lip's line skin still binds [mm].
 _SKIN, _LINING = 2.0, 3.0
+# Lining hangs on so many vertices of the skin in front of it, this near, that face away from it.
+_THREADS, _DEEP, _FACING = 3, 7.0, 0.0
+# Tissue holds lining this weakly, it goes with the skin.
+_LINED = 0.005
 # How much more strongly skin is held where it must be still, over a spring to a muscle.
 _STILL = 20.0
 
@@ -62,6 +67,8 @@ class SkinSprings:
         Of their springs and of the partners, if there are any.
     tissue : (n,) float64
         Stiffness of what draws the skin home, without grips.
+    across_count : int
+        How many edges, the last ones, run from lining to the skin in front of it.
     """
 
     skin: Skin
@@ -79,6 +86,7 @@ class SkinSprings:
     on_jaw: BoolArray
     bone_stiffness: FloatArray
     tissue: FloatArray
+    across_count: int = 0
 
     @property
     def muscle_spring_count(self) -> int:
@@ -116,11 +124,15 @@ def build_springs(
         raise ParameterError("attachment: missing; these parameters hold the skin by bones")
     positions = mesh.positions
     pairs = edges(mesh.faces)
-    length = np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
     k = edge_stiffness(mesh, pairs, least_length=p.least_length, least=p.least_stiffness)
     unit = float(np.median(k))
     soft = (skin.lids[pairs] > 0.0).all(axis=1)
     k = np.where(soft, p.lid_softness * k, k)
+    through = _across(skin) if p.across > 0.0 else np.zeros((0, 2), np.int32)
+    if len(through):
+        pairs = np.concatenate([pairs, through])
+        k = np.concatenate([k, np.full(len(through), p.across * unit)])
+    length = np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
     counted = _counted(skin, p) * unit
     bound = _bind(skin, muscles, lips, counted * p.muscle_stiffness, fall_off=p.fall_off)
     vertices, segments, numbers, feet, stiffness, shares = bound
@@ -151,12 +163,34 @@ def build_springs(
     network = replace(network, load=-edge_forces(network, positions))
     return SkinSprings(
         skin, network, vertices, segments, numbers, feet, partners, rest_feet, stiffness, shares,
-        bone_vertices, bone_feet, on_jaw, np.tile(bone_stiffness, both), tissue,
+        bone_vertices, bone_feet, on_jaw, np.tile(bone_stiffness, both), tissue, len(through),
     )  # fmt: skip
 
 
+def _across(skin: Skin) -> IntArray:
+    """Return pairs (q, 2) of lining and the skin close in front of it: lips and lids have a depth.
+
+    Without them skin that slides back would come out behind its own lining.
+    """
+    lining = np.flatnonzero(skin.hidden & (skin.mass > 1e-9))
+    seen = np.flatnonzero(~skin.hidden & (skin.mass > 1e-9))
+    if not (len(lining) and len(seen)):
+        return np.zeros((0, 2), np.int32)
+    limit = _DEEP * skin.scale
+    distance, near = cKDTree(skin.positions[seen]).query(
+        skin.positions[lining], k=_THREADS, distance_upper_bound=limit
+    )
+    rows, columns = np.nonzero(np.isfinite(distance))
+    first, second = lining[rows], seen[near[rows, columns]]
+    facing = np.einsum("qd,qd->q", skin.normals[first], skin.normals[second]) < _FACING
+    # Springs of hardly any length have no direction.
+    long = np.linalg.norm(skin.positions[first] - skin.positions[second], axis=1) > 1e-3
+    kept = facing & long
+    return np.stack([first[kept], second[kept]], axis=1).astype(np.int32)
+
+
 def _neck(skin: Skin) -> IntArray:
-    """Return the rim (r,) of the neck, the lowest hole of the skin; it must not move (finding S9)."""
+    """Return the rim (r,) of the neck, the lowest hole; it must not move (finding S9)."""
     loops = boundary_loops(skin.mesh.faces)
     if not loops:
         return np.zeros(0, np.int32)
@@ -225,5 +259,6 @@ def _tissue(
     if p.holding == "bone":
         loose = np.ones(len(counted)) if attachment is None else attachment.bones == 0
         return p.home * counted * loose
+    passive = np.where(skin.hidden, np.minimum(skin.passive, _LINED), skin.passive)
     still = _STILL * p.muscle_stiffness * (1.0 - skin.mobility) ** 2
-    return (p.tissue * skin.passive + still) * counted
+    return (p.tissue * passive + still) * counted
