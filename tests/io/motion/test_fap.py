@@ -111,8 +111,11 @@ def test_what_is_no_stream_is_refused_with_its_line(
         _values(_write(tmp_path, *lines))
 
 
-def test_a_binary_stream_is_recognised_and_refused_in_one_sentence(tmp_path: Path) -> None:
-    path = tmp_path / "x.fap"
+@pytest.mark.parametrize("name", ["x.fap", "x.fba", "stream"])
+def test_a_binary_stream_is_recognised_and_refused_in_one_sentence(
+    tmp_path: Path, name: str
+) -> None:
+    path = tmp_path / name
     path.write_bytes(b"\x00\x00\x01\xba" + bytes(range(256)))
     with pytest.raises(FormatError, match=r"binary stream \(MPEG-4 FBA\)"):
         read_stream(path)
@@ -123,6 +126,9 @@ def test_a_missing_file_and_an_unknown_ending_are_refused(tmp_path: Path) -> Non
         read_stream(tmp_path / "none.fap")
     with pytest.raises(FormatError, match=r"no ending of a stream; known: \.fap \.csv"):
         read_stream(tmp_path / "x.bvh")
+    (tmp_path / "x.fbx").write_bytes(b"Kaydara FBX Binary  \0\x1a\0")
+    with pytest.raises(FormatError, match="no ending of a stream"):
+        read_stream(tmp_path / "x.fbx")
 
 
 @given(

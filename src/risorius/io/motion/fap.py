@@ -30,7 +30,7 @@ from risorius.io.motion.fap_groups import (
     viseme_fields,
     viseme_weights,
 )
-from risorius.io.motion.text_lines import bounded_lines, parse_number
+from risorius.io.motion.text_lines import bounded_lines, parse_number, refuse_binary_stream
 
 __all__ = ["read_fap", "write_fap"]
 
@@ -77,23 +77,10 @@ def read_fap(path: str | Path) -> Stream:
         Where the file leaves its format and can be read all the same.
     """
     path = Path(path)
-    _refuse_binary(path)
+    refuse_binary_stream(path, text_expected=True)
     header = _header(path)
     names = (*(fap_name(number) for number in faps()), *GROUP_NAMES)
     return Stream(str(path), header.rate, names, lambda: _frames(path, header))
-
-
-def _refuse_binary(path: Path) -> None:
-    try:
-        with path.open("rb") as file:
-            start = file.read(512)
-    except OSError:
-        return  # said better by the reader of lines
-    if b"\0" in start:
-        raise FormatError(
-            f"{path}: is a binary stream (MPEG-4 FBA), only text streams of version {_VERSION} "
-            "are read; convert it with the tool that made it"
-        )
 
 
 def _header(path: Path) -> _Header:

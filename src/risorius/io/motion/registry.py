@@ -8,6 +8,7 @@ from pathlib import Path
 from risorius.controls.stream import Stream
 from risorius.errors import FormatError
 from risorius.io.motion.fap import read_fap, write_fap
+from risorius.io.motion.text_lines import refuse_binary_stream
 from risorius.io.motion.weights_csv import read_weights_csv, write_weights_csv
 from risorius.io.motion.weights_json import read_weights_json, write_weights_json
 
@@ -36,7 +37,10 @@ def read_stream(path: str | Path) -> Stream:
     FormatError
         If the ending is unknown or the file is malformed.
     """
-    return _of(Path(path))[0](Path(path))
+    path = Path(path)
+    if path.suffix.lower() not in _FORMATS and path.is_file():
+        refuse_binary_stream(path, text_expected=False)
+    return _of(path)[0](path)
 
 
 def write_stream(stream: Stream, path: str | Path) -> int:

@@ -9,11 +9,13 @@ from pathlib import Path
 
 from risorius.errors import FormatError
 
-__all__ = ["LONGEST_LINE", "bounded_lines", "parse_number"]
+__all__ = ["LONGEST_LINE", "bounded_lines", "parse_number", "refuse_binary_stream"]
 
 LONGEST_LINE = 1 << 16
 _LARGEST = 1e12
 _MOST_DIGITS = 40
+_START = 512
+_START_CODE = b"\0\0\1"
 
 
 def bounded_lines(path: Path) -> Iterator[tuple[int, str]]:
@@ -61,3 +63,26 @@ def parse_number(text: str, where: str) -> float:
     if not abs(value) <= _LARGEST:
         raise FormatError(f"{where}: {text[:40]!r} is no number within {_LARGEST:g}")
     return value
+
+
+def refuse_binary_stream(path: Path, *, text_expected: bool) -> None:
+    """Refuse a file that looks like a coded stream of MPEG-4 (FBA).
+
+    Coded streams open with a start code, two bytes of zero and a one. Where text is expected any
+    zero among the first bytes tells enough.
+
+    Raises
+    ------
+    FormatError
+        If it does.
+    """
+    try:
+        with path.open("rb") as file:
+            start = file.read(_START)
+    except OSError:
+        return  # said better by the reader of lines
+    if start.startswith(_START_CODE) or (text_expected and b"\0" in start):
+        raise FormatError(
+            f"{path}: is a binary stream (MPEG-4 FBA), only text streams of version 2.1 are read; "
+            "convert it with the tool that made it"
+        )
