@@ -24,14 +24,12 @@ from risorius.springmuscle.driving import Drive, Driver
 from risorius.springmuscle.fit import Ground, fit_muscles
 from risorius.springmuscle.fit_parameters import FitParameters
 from risorius.springmuscle.live import LiveFace
-from risorius.springmuscle.measure import FaceMeasure
 from risorius.springmuscle.muscle_set import MuscleSet
 from risorius.springmuscle.parameters import Profile, SpringParameters
 from risorius.springmuscle.recipe import OutlineRecipe
 from risorius.springmuscle.recipe_file import default_recipe
 from risorius.springmuscle.relax import start_of
 from risorius.springmuscle.skin import SkinSprings, build_springs
-from risorius.springmuscle.surface import label_lips
 
 __all__ = ["SpringFace"]
 
@@ -147,8 +145,7 @@ class SpringFace:
         hidden = hidden_skin(moving.lips, moving.margins)
         fitted = fit_skull(builtin_skull(), head, symmetric=partner is not None, hidden=hidden)
         skin = build_skin(moving, fitted, partner)
-        lips, _ = label_lips(moving.lips, FaceMeasure.of(head.landmarks))
-        springs = build_springs(skin, muscles, attachment, lips, p)
+        springs = build_springs(skin, muscles, attachment, moving, p)
         contraction = Contraction(muscles) if p.linked else Contraction(muscles, sweeps=0)
         driver = Driver(springs, contraction, moving, p)
         contact = Contact.build(skin, moving) if p.contact else None

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from risorius._check import BoolArray, FloatArray, IntArray
+from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.skin import Skin
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.errors import ParameterError
@@ -19,9 +20,11 @@ from risorius.solvers.spring_stiffness import edge_stiffness
 from risorius.solvers.springs import SpringNetwork
 from risorius.springmuscle.binding import bind_muscle
 from risorius.springmuscle.bones import SkinBones
+from risorius.springmuscle.measure import FaceMeasure
 from risorius.springmuscle.muscle import JAW
 from risorius.springmuscle.muscle_set import MuscleSet
 from risorius.springmuscle.parameters import SpringParameters
+from risorius.springmuscle.surface import label_lips
 
 __all__ = ["SkinSprings", "build_springs"]
 
@@ -98,7 +101,7 @@ def build_springs(
     skin: Skin,
     muscles: MuscleSet,
     attachment: SkinBones | None,
-    lips: npt.NDArray[np.int8],
+    mechanics: Mechanics,
     parameters: SpringParameters,
 ) -> SkinSprings:
     """Hang a skin on muscles and bones.
@@ -110,8 +113,8 @@ def build_springs(
         Fitted under it.
     attachment : SkinBones or None
         Which bone lies under each vertex, and where.
-    lips : (n,) int8
-        1 on the upper lip, -1 on the lower, 0 elsewhere: a lip never hangs on the other's muscles.
+    mechanics : Mechanics
+        Its lips and lids: a lip never hangs on the other's muscles.
     parameters : SpringParameters
 
     Raises
@@ -120,6 +123,8 @@ def build_springs(
         If the skin is to be held by bones and nothing is known of any.
     """
     p, mesh = parameters, skin.mesh
+    lips, sides = label_lips(mechanics.lips, FaceMeasure.of(mechanics.head.landmarks))
+    sides = _with_lids(sides, mechanics)
     if p.holding == "bone" and attachment is None:
         raise ParameterError("attachment: missing; these parameters hold the skin by bones")
     positions = mesh.positions
@@ -128,7 +133,7 @@ def build_springs(
     unit = float(np.median(k))
     soft = (skin.lids[pairs] > 0.0).all(axis=1)
     k = np.where(soft, p.lid_softness * k, k)
-    through = _across(skin) if p.across > 0.0 else np.zeros((0, 2), np.int32)
+    through = _across(skin, sides) if p.across > 0.0 else np.zeros((0, 2), np.int32)
     if len(through):
         pairs = np.concatenate([pairs, through])
         k = np.concatenate([k, np.full(len(through), p.across * unit)])
@@ -167,10 +172,11 @@ def build_springs(
     )  # fmt: skip
 
 
-def _across(skin: Skin) -> IntArray:
+def _across(skin: Skin, sides: npt.NDArray[np.int8]) -> IntArray:
     """Return pairs (q, 2) of lining and the skin close in front of it: lips and lids have a depth.
 
-    Without them skin that slides back would come out behind its own lining.
+    Without them skin that slides back would come out behind its own lining. The lining of one lip
+    or lid never hangs on the other one; `sides` (n,) tells them apart.
     """
     lining = np.flatnonzero(skin.hidden & (skin.mass > 1e-9))
     seen = np.flatnonzero(~skin.hidden & (skin.mass > 1e-9))
@@ -185,8 +191,17 @@ def _across(skin: Skin) -> IntArray:
     facing = np.einsum("qd,qd->q", skin.normals[first], skin.normals[second]) < _FACING
     # Springs of hardly any length have no direction.
     long = np.linalg.norm(skin.positions[first] - skin.positions[second], axis=1) > 1e-3
-    kept = facing & long
+    kept = facing & long & (sides[first] == sides[second])
     return np.stack([first[kept], second[kept]], axis=1).astype(np.int32)
+
+
+def _with_lids(sides: npt.NDArray[np.int8], mechanics: Mechanics) -> npt.NDArray[np.int8]:
+    """Return the sides (n,) of mouth and eyes: 1 and -1 for the lips, 2 and more for the lids."""
+    result = sides.copy()
+    for number, margins in enumerate(mechanics.margins.values()):
+        near = margins.distance < 2.0 * margins.height
+        result[near] = np.where(margins.upper[near], 2, 3) + 2 * number
+    return result
 
 
 def _neck(skin: Skin) -> IntArray:
