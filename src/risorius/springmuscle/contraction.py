@@ -30,14 +30,14 @@ class Contracted:
 
     Parameters
     ----------
-    points : (P, 3) float64
+    points : (p, 3) float64
         Control points [mm].
-    centres : (S, 3) float64
+    centres : (s, 3) float64
         Of the ellipsoids [mm].
-    axes : (S, 3, 3) float64
+    axes : (s, 3, 3) float64
         Maps local coordinates of the relaxed ellipsoid, in millimetres along its frame, into
         space: ``x = centre + axes @ local``.
-    heights : (S,) float64
+    heights : (s,) float64
         Height over relaxed height.
     sweeps : int
         Over the links.
@@ -84,7 +84,7 @@ class Contraction:
         ----------
         contractions : (k,) array_like
             c of every muscle, clamped to 0..1; see `MuscleSet.contractions`.
-        points, aims : (P, 3) float64, optional
+        points, aims : (p, 3) float64, optional
             Relaxed points and aims after the jaw has moved [mm].
 
         Notes
@@ -169,8 +169,9 @@ class Contraction:
 
 
 def bulge_factors(stretch: FloatArray, bells: FloatArray, gains: FloatArray) -> FloatArray:
-    """Return height over relaxed height (S,) of segments stretched by `stretch` (S,).
+    """Return height over relaxed height (s,) of segments stretched by `stretch` (s,).
 
+    `bells` (s,) is the share of a segment's strain that shows, `gains` (s,) the gain of height.
     ``max(0.2, 1 + gain s)`` with ``s = bell (1 - stretch)``: published with gain 2; elongated
     segments get thinner, but never vanish (erratum E3). Elongation acts everywhere alike.
     """
@@ -180,7 +181,7 @@ def bulge_factors(stretch: FloatArray, bells: FloatArray, gains: FloatArray) -> 
 
 
 def turn_between(source: FloatArray, target: FloatArray) -> FloatArray:
-    """Return the smallest rotations (s, 3, 3) that take unit vectors `source` to `target` (s, 3).
+    """Return the least rotations (s, 3, 3) that take unit `source` (s, 3) to `target` (s, 3).
 
     ``R = I + K + K K / (1 + cos)`` with K the cross product matrix of source x target; opposite
     vectors, which have no smallest rotation, turn about any axis across them.
@@ -200,7 +201,7 @@ def turn_between(source: FloatArray, target: FloatArray) -> FloatArray:
 
 
 def _places(rest: MuscleSet) -> FloatArray:
-    """Return the relaxed share (P,) of its fibre's length at each point; 1 all along a ring."""
+    """Return the relaxed share (p,) of its fibre's length at each point; 1 all along a ring."""
     places = np.ones(len(rest.points))
     for f, m in enumerate(rest.fibre_muscle):
         if rest.ring_muscles[m]:
@@ -212,7 +213,7 @@ def _places(rest: MuscleSet) -> FloatArray:
 
 
 def _bells(rest: MuscleSet) -> FloatArray:
-    """Return the share (S,) of its strain that each segment shows as bulge.
+    """Return the share (s,) of its strain that each segment shows as bulge.
 
     ``1 - (2 i / (n - 2) - 1)^2`` along linear fibres of three and more segments, so that the ends
     stay flat; 1 on shorter ones and all around sphincters (Kaehler et al. 2001, eq. 4; erratum E2).

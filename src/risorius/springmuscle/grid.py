@@ -81,18 +81,21 @@ class Layer:
         return own or (self.parameters.least, self.parameters.most)
 
     def skin(self, points: FloatArray) -> FloatArray:
-        """Return the thickness of the skin (..., ) at `points` (..., 3) [mm]."""
+        """Return the thickness (...,) of the skin at `points` (..., 3) [mm]."""
         own = self.outline.settings.skin
         value = self.parameters.skin if own is None else own
         flat = thickness_at(value, points.reshape(-1, 3), self.surface.measure)
         return flat.reshape(points.shape[:-1])
 
     def start(self, points: FloatArray) -> FloatArray:
-        """Return the depth that points are placed at, tau_s + (tau_min + tau_max) / 4 [mm]."""
+        """Return the depth (q,) to place `points` (q, 3) at, tau_s + (tau_min + tau_max) / 4 [mm]."""
         return self.skin(points) + 0.25 * (self.least + self.most)
 
     def range(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return least and greatest depth of the middle of a muscle (erratum E4) [mm]."""
+        """Return least and greatest depth (q,) of the middle of a muscle at `points` (q, 3) [mm].
+
+        Halves, as its thickness reaches to both sides (erratum E4).
+        """
         skin = self.skin(points)
         return skin + 0.5 * self.least, skin + 0.5 * self.most
 

@@ -50,7 +50,7 @@ class Links:
 
 @dataclass(frozen=True, eq=False)
 class MuscleSet:
-    """Muscles of one head with P control points and S ellipsoids in F fibres.
+    """Muscles of one head with p control points and s ellipsoids in f fibres.
 
     Parameters
     ----------
@@ -85,79 +85,79 @@ class MuscleSet:
 
     @cached_property
     def points(self) -> FloatArray:
-        """Relaxed control points (P, 3) [mm]."""
+        """Relaxed control points (p, 3) [mm]."""
         return _stacked([fibre.points for m in self.muscles for fibre in m.fibres], (0, 3))
 
     @cached_property
     def bones(self) -> npt.NDArray[np.int8]:
-        """Bone (P,) of every control point."""
+        """Bone (p,) of every control point."""
         parts = [fibre.bones for m in self.muscles for fibre in m.fibres]
         return np.concatenate(parts) if parts else np.zeros(0, np.int8)
 
     @cached_property
     def fibre_starts(self) -> IntArray:
-        """First point (F + 1,) of every fibre, and P; fibre f has segments from start - f on."""
+        """First point (f + 1,) of every fibre, and p; fibre f has segments from start - f on."""
         counts = [len(fibre.points) for m in self.muscles for fibre in m.fibres]
         return np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
 
     @cached_property
     def fibre_muscle(self) -> IntArray:
-        """Muscle (F,) of every fibre."""
+        """Muscle (f,) of every fibre."""
         counts = [len(m.fibres) for m in self.muscles]
         return np.repeat(np.arange(len(counts)), counts).astype(np.int32)
 
     @cached_property
     def segment_fibre(self) -> IntArray:
-        """Fibre (S,) of every segment."""
+        """Fibre (s,) of every segment."""
         counts = np.diff(self.fibre_starts) - 1
         return np.repeat(np.arange(len(counts)), counts).astype(np.int32)
 
     @cached_property
     def segment_muscle(self) -> IntArray:
-        """Muscle (S,) of every segment."""
+        """Muscle (s,) of every segment."""
         return self.fibre_muscle[self.segment_fibre]
 
     @cached_property
     def point_muscle(self) -> IntArray:
-        """Muscle (P,) of every control point."""
+        """Muscle (p,) of every control point."""
         return np.repeat(self.fibre_muscle, np.diff(self.fibre_starts)).astype(np.int32)
 
     @cached_property
     def segment_points(self) -> IntArray:
-        """Control point (S,) that every segment begins at; it ends at the next one."""
+        """Control point (s,) that every segment begins at; it ends at the next one."""
         return (np.arange(len(self.segment_fibre)) + self.segment_fibre).astype(np.int32)
 
     @cached_property
     def centres(self) -> FloatArray:
-        """Centres of the relaxed ellipsoids (S, 3) [mm]."""
+        """Centres of the relaxed ellipsoids (s, 3) [mm]."""
         first = self.segment_points
         return 0.5 * (self.points[first] + self.points[first + 1])
 
     @cached_property
     def lengths(self) -> FloatArray:
-        """Relaxed lengths of the segments (S,) [mm]."""
+        """Relaxed lengths of the segments (s,) [mm]."""
         first = self.segment_points
         return np.linalg.norm(self.points[first + 1] - self.points[first], axis=1)
 
     @cached_property
     def half_axes(self) -> FloatArray:
-        """Half length, width and height of the ellipsoids (S, 3) [mm]."""
+        """Half length, width and height of the ellipsoids (s, 3) [mm]."""
         return _stacked([fibre.half_axes for m in self.muscles for fibre in m.fibres], (0, 3))
 
     @cached_property
     def frames(self) -> FloatArray:
-        """Frames of the relaxed ellipsoids (S, 3, 3), unit vectors in the columns."""
+        """Frames of the relaxed ellipsoids (s, 3, 3), unit vectors in the columns."""
         return _stacked([fibre.frames for m in self.muscles for fibre in m.fibres], (0, 3, 3))
 
     @cached_property
     def lips(self) -> npt.NDArray[np.int8]:
-        """Lip (S,) above every segment: 1 upper, -1 lower, 0 neither."""
+        """Lip (s,) above every segment: 1 upper, -1 lower, 0 neither."""
         parts = [fibre.lips for m in self.muscles for fibre in m.fibres]
         return np.concatenate(parts) if parts else np.zeros(0, np.int8)
 
     @cached_property
     def aims(self) -> FloatArray:
-        """Where each control point of a sphincter is drawn to (P, 3), itself elsewhere [mm]."""
+        """Where each control point of a sphincter is drawn to (p, 3), itself elsewhere [mm]."""
         parts = [
             fibre.points if fibre.aims is None else fibre.aims
             for m in self.muscles
@@ -167,7 +167,7 @@ class MuscleSet:
 
     @cached_property
     def shares(self) -> FloatArray:
-        """Share of its muscle's contraction (P,) that acts at each control point."""
+        """Share of its muscle's contraction (p,) that acts at each control point."""
         parts = [
             np.ones(len(fibre.points)) if fibre.shares is None else fibre.shares
             for m in self.muscles
@@ -181,7 +181,7 @@ class MuscleSet:
         return np.array([m.sphincter for m in self.muscles], bool)
 
     def moved_with_jaw(self, jaw: JawAxes, pose: JawPose) -> tuple[FloatArray, FloatArray]:
-        """Return points and aims (P, 3) after the jaw has moved, each row with its own bone.
+        """Return points and aims (p, 3) after the jaw has moved, each row with its own bone.
 
         A sphincter with points on both bones is drawn to the mean of its aim on the skull and of
         its aim on the jaw (erratum E9).

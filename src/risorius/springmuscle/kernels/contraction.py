@@ -79,7 +79,7 @@ def contract_points(
     room,
     result,
 ):
-    """Contract every fibre; `result` (P, 3) receives the control points, `room` (P,) is scratch."""
+    """Contract every fibre; `result` (p, 3) receives the control points, `room` (p,) is scratch."""
     for f in range(len(starts) - 1):
         first, last, m = starts[f], starts[f + 1] - 1, fibre_muscle[f]
         if rings[m]:
@@ -96,10 +96,10 @@ def hold_links(
 
     Each link keeps the relaxed distances `rest` (l, 2) between the end of one fibre and the two
     points of the segment that it lies in. `ends` (l, 2) are fibre and point, `hosts` (l, 2) the
-    two points, `places` (P,) the relaxed share of its fibre's length at each point: the correction
-    of an end is spread over its fibre and fades towards the origin. `fixed` points (P,) stay.
-    `twins` (P,) is the other copy of a ring's first point, or the point itself. An `active` fibre's
-    points (P,) take `yielding` of a correction against 1.
+    two points, `places` (p,) the relaxed share of its fibre's length at each point: the correction
+    of an end is spread over its fibre and fades towards the origin. `fixed` points (p,) stay.
+    `twins` (p,) is the other copy of a ring's first point, or the point itself. An `active` fibre's
+    points (p,) take `yielding` of a correction against 1.
     """
     change = 0.0
     for sweep in range(sweeps):
