@@ -115,13 +115,7 @@ class Anatomy:
             owner[surface.rows] = name
         result: dict[str, set[str]] = {}
         for laid in self.muscles:
-            lines = laid.lines
-            drawn = (
-                lines.lines
-                if isinstance(lines, RingLines)
-                else (*lines.contour.lines, *lines.inner.values())
-            )
-            found = {str(owner[f]) for line in drawn for f in line.points.faces}
+            found = {str(owner[f]) for line in laid.lines.drawn for f in line.points.faces}
             result[laid.name] = found.union(*(result.get(name, set()) for name in found))
         return result
 
@@ -228,7 +222,12 @@ def muscle_places(
         [mm].
     """
     positions, faces = anatomy.positions, anatomy.faces
-    normals = vertex_normals(positions, faces[rows])
+    # Normals are asked for on the lines alone, which touch few of the faces.
+    touched = np.zeros(len(positions), bool)
+    for line in lines.drawn:
+        touched[faces[line.points.faces]] = True
+    near = rows[touched[faces[rows]].any(axis=1)]
+    normals = vertex_normals(positions, faces[near])
     bottom = lines.bottom(positions, faces)
     top = bottom + thickness * lines.upwards(positions, normals, faces)
     return np.concatenate([bottom, top])

@@ -9,8 +9,9 @@ import numpy as np
 
 from risorius._check import FloatArray, IntArray
 from risorius.anatomy.jaw import JawPose
+from risorius.anatomy.lip_contact import LipContact
 from risorius.anatomy.mechanics import Mechanics
-from risorius.anatomy.skin import mirror_partners
+from risorius.anatomy.skin import build_skin, mirror_partners
 from risorius.anatomy.skull import Skull, builtin_skull
 from risorius.anatomy.skull_fit import MIRROR, FittedSkull, fit_skull
 from risorius.controls.control import Control, Pose, resolve_pose
@@ -20,12 +21,15 @@ from risorius.head.head import Head
 from risorius.layered.faithful.anatomy import Anatomy, lay_anatomy, rebuilt
 from risorius.layered.faithful.binding import Anchors, bind_skin
 from risorius.layered.faithful.influence import influence_map
+from risorius.layered.faithful.lift import lifted_bones
+from risorius.layered.faithful.lips import joined_contacts, lip_contacts
 from risorius.layered.faithful.live import LiveFace
 from risorius.layered.faithful.motion import MovingMuscles
 from risorius.layered.faithful.parameters import FaithfulParameters
 from risorius.layered.faithful.skin import SkinModel, build_skin_model
 from risorius.layered.faithful.teeth import Teeth, build_teeth
 from risorius.layered.muscle_map import MuscleMap, default_muscle_map
+from risorius.solvers.constraints import Contacts
 from risorius.solvers.model import State
 from risorius.solvers.pbd import Solver
 
@@ -50,6 +54,7 @@ class FaithfulFace:
         Of every skin vertex.
     skin : SkinModel
     teeth : Teeth
+    lips : LipContact
     partner : (n,) int32 or None
         Vertex opposite to each on a symmetric skin.
     controls : tuple of Control
@@ -63,6 +68,7 @@ class FaithfulFace:
     influence: FloatArray
     skin: SkinModel
     teeth: Teeth
+    lips: LipContact
     partner: IntArray | None
     controls: tuple[Control, ...]
     parameters: FaithfulParameters
@@ -106,7 +112,12 @@ class FaithfulFace:
             hidden |= margins.slit.inside
         fitted = fit_skull(bones, head, symmetric=partner is not None, hidden=hidden)
         drawn = lay_anatomy((muscle_map or default_muscle_map()).published, bones, p)
-        anatomy = rebuilt(drawn, _fitted_bones(bones, fitted), scale=fitted.scale)
+        inside = _fitted_bones(bones, fitted)
+        if p.lift:
+            inside = lifted_bones(
+                drawn, inside, moving, scale=fitted.scale, symmetric=partner is not None
+            )
+        anatomy = rebuilt(drawn, inside, scale=fitted.scale)
         anchors = bind_skin(anatomy, moving, fitted.scale, p)
         influence = influence_map(
             moving, anchors,
@@ -117,7 +128,8 @@ class FaithfulFace:
         names = tuple(dict.fromkeys(laid.control for laid in anatomy.muscles if laid.control))
         return FaithfulFace(
             head, moving, MovingMuscles(anatomy, p), anchors, influence, skin,
-            build_teeth(moving, fitted.scale), partner,
+            build_teeth(moving, fitted.scale),
+            LipContact.build(build_skin(moving, fitted, partner), moving.lips), partner,
             controls_of_muscles(names) + moving.controls, p,
         )  # fmt: skip
 
@@ -200,6 +212,10 @@ class FaithfulFace:
             moved = moved + values.get(f"cheek_puff_{side}", 0.0) * field
         return moved + values.get("lips_together", 0.0) * self.mechanics.seal
 
+    def contacts(self, teeth: Teeth, skin: FloatArray) -> Contacts | None:
+        """Return what the `skin` (n, 3) [mm] must leave: placed `teeth`, and its other lip."""
+        return joined_contacts([teeth.contacts(skin), lip_contacts(self.lips, skin)])
+
     def spread(self, skin: FloatArray, values: Mapping[str, float]) -> FloatArray:
         """Return the displacement (n, 3) of all input vertices from the skin's (w, 3) [mm]."""
         result = self.mechanics.pose(np.zeros_like(skin), values)
@@ -214,7 +230,7 @@ class FaithfulFace:
             moved = self._evened(moved, values, self.partner)
         rest = self.head.skin.mesh.positions
         teeth = self.teeth.moved(self.mechanics.jaw, self.jaw_of(values))
-        return teeth.pushed_out(rest + moved) - rest
+        return teeth.pushed_out(rest + self.lips.part(moved)) - rest
 
     def _evened(
         self, moved: FloatArray, values: Mapping[str, float], partner: IntArray
@@ -245,13 +261,14 @@ class FaithfulFace:
             state = State(positions, np.zeros_like(positions))
             positions = solver.settle(model, state, control, parameters=quick).positions
         teeth, contacts = self.teeth.moved(self.mechanics.jaw, self.jaw_of(values)), None
-        for _ in range(p.teeth_rounds):
+        for _ in range(p.contact_rounds):
             state = State(positions, np.zeros_like(positions))
             control = self.skin.control(end, lids, contacts)
             positions = solver.settle(model, state, control, parameters=p.skin_solver).positions
-            contacts = teeth.contacts(positions[:n])
-            if contacts is None:
+            found = self.contacts(teeth, positions[:n])
+            if found is None:
                 break
+            contacts = joined_contacts([contacts, found])
         return self.finished(positions[:n], values)
 
 

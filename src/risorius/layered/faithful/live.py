@@ -70,9 +70,9 @@ class LiveFace:
         self._muscles = face.muscles.step(self._muscles, face.bones(values), contractions)
         places = face.anchors.places(self._muscles.positions, face.muscles.anatomy.faces)
         teeth = face.teeth.moved(face.mechanics.jaw, face.jaw_of(values))
-        contacts = teeth.contacts(self._skin.positions[:n])
+        contacts = face.contacts(teeth, self._skin.positions[:n])
         control = face.skin.control(places, face.lids(values), contacts)
         self._skin = self._solver.step(
             face.skin.model, self._skin, control, parameters=p.skin_solver
         )
-        self._moved = face.finished(self._skin.positions[:n], values)
+        self._moved = face.lips.part(face.finished(self._skin.positions[:n], values))

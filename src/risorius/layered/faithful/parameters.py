@@ -71,6 +71,9 @@ class FaithfulParameters:
     protrusion : float
         Forward shift of a sphincter as a share of its mean motion in its plane; not published,
         about 2 lets lips pucker (finding S4).
+    lift : bool
+        Whether landmarks of the skull are lifted onto the muscles that cover them (spec 2.9), and
+        bone sinks where muscle would come through the skin.
     wide : float
         A sheet wider than this has a fibre line in every column [mm].
     split_gap, split_tolerance, split_levels
@@ -89,8 +92,8 @@ class FaithfulParameters:
     influence_reach, jaw_reach : float
         Distance along the skin from what hangs on a muscle, or on the jaw, to where nothing
         moves, as share of the head's height; the jaw reaches farther, or the neck folds under it.
-    teeth_rounds : int
-        How often contacts with the teeth are looked for in one pose.
+    contact_rounds : int
+        How often contacts with teeth and between lips are looked for in one pose.
     ramp_steps, ramp_sweeps : int
         Stages over which a pose is entered, and sweeps in each.
     even : bool
@@ -109,6 +112,7 @@ class FaithfulParameters:
     largest_contraction: float = 0.99
     largest_ring_contraction: float = 0.95
     protrusion: float = 0.0
+    lift: bool = True
     wide: float = 8.0
     split_gap: float = 0.25
     split_tolerance: float = 0.01
@@ -120,7 +124,7 @@ class FaithfulParameters:
     lid_hold: float = 0.2
     influence_reach: float = 0.25
     jaw_reach: float = 0.55
-    teeth_rounds: int = 3
+    contact_rounds: int = 3
     ramp_steps: int = 5
     ramp_sweeps: int = 12
     even: bool = True
@@ -129,7 +133,7 @@ class FaithfulParameters:
         for name in ("anchor", "bone_anchor", "largest_contraction", "largest_ring_contraction",
                      "lid_pinned", "lid_hold", "shortening_limit"):  # fmt: skip
             as_number(name, getattr(self, name), low=0.0, high=1.0)
-        for name in ("ramp_steps", "ramp_sweeps", "teeth_rounds"):
+        for name in ("ramp_steps", "ramp_sweeps", "contact_rounds"):
             as_number(name, getattr(self, name), low=1)
         for name in ("anchor_reach", "influence_reach", "jaw_reach"):
             as_number(name, getattr(self, name), low=1e-6)

@@ -41,6 +41,11 @@ class SheetLines:
     limit: float
 
     @property
+    def drawn(self) -> tuple[ActionLine, ...]:
+        """All lines: the contour's, then internal ones."""
+        return (*self.contour.lines, *self.inner.values())
+
+    @property
     def held(self) -> tuple[IntArray, IntArray]:
         """Bottom vertices (k,) with targets on the origin row, and (l,) along the fibre lines."""
         h, w = self.rows, self.columns

@@ -49,6 +49,11 @@ class RingLines:
         return len(self.lines)
 
     @property
+    def drawn(self) -> tuple[ActionLine, ...]:
+        """All lines, from the inner to the outer one."""
+        return self.lines
+
+    @property
     def held(self) -> tuple[IntArray, IntArray]:
         """No origin (0,), and all bottom vertices (h*w,)."""
         none = np.zeros(0, np.int32)
