@@ -76,6 +76,7 @@ def _outlines(draw) -> MuscleOutline:
         stiffness=draw(st.floats(0, 10)),
         fixed_point=draw(st.floats(0, 1)),
         bulge=draw(st.floats(0, 9)),
+        seal=draw(st.booleans()),
         host=draw(st.booleans()),
     )
     kind = "sphincter" if round_ else draw(st.sampled_from(("linear", "sheet", "curved")))

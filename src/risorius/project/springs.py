@@ -14,6 +14,7 @@ from risorius.layered.muscle_map import default_muscle_map
 from risorius.project.layered import skull_of
 from risorius.project.project import Project
 from risorius.rig.face import Face
+from risorius.springmuscle.bones import BoneWay
 from risorius.springmuscle.face import SpringFace
 from risorius.springmuscle.parameters import Profile, SpringParameters
 from risorius.springmuscle.recipe import OutlineRecipe
@@ -43,7 +44,7 @@ def spring_face(project: Project, head: Head, mechanics: Mechanics | None) -> Fa
     way = project.bones or ("builtin" if project.skull is None else "given")
     skull = _skull(project, way)
     return SpringFace.build(
-        head, recipe_of(project), bones=way, skull=skull, profile=profile, mechanics=mechanics,
+        head, recipe_of(project), bones=cast(BoneWay, way), skull=skull, profile=profile, mechanics=mechanics,
         parameters=_parameters(project, SpringParameters.of_profile(profile)),
     )  # fmt: skip
 

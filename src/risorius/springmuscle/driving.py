@@ -76,6 +76,8 @@ class Driver:
     fields : mapping of str to (n, 3) float64
         Displacement of the skin by every muscle control alone at 1 [mm]; with them muscles ride
         on skin that others move.
+    seals : mapping of str to (n, 3) float64
+        Forces between the lips that belong to the fields of muscles that seal them.
     """
 
     springs: SkinSprings
@@ -83,6 +85,7 @@ class Driver:
     mechanics: Mechanics
     parameters: SpringParameters
     fields: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
+    seals: Mapping[str, FloatArray] = field(default_factory=dict[str, FloatArray])
 
     def drive(self, values: Mapping[str, float]) -> Drive:
         """Return what `values` ask for."""
@@ -182,7 +185,9 @@ class Driver:
         p, springs = self.parameters, self.springs
         muscles = self.contraction.muscles.muscles
         share = np.array([values.get(m.action.control, 0.0) for m in muscles])
-        awake = np.clip(share / p.waking, 0.0, 1.0) if p.waking > 0.0 else share > 0.0
+        awake = (share > 0.0).astype(np.float64)
+        if p.waking > 0.0:
+            awake = np.clip(share / p.waking, 0.0, 1.0)
         activity = (p.resting + (1.0 - p.resting) * awake)[springs.muscles]
         guess = reference
         if self.fields:
@@ -207,18 +212,36 @@ class Driver:
         control = SpringControl(
             anchors=np.concatenate([*anchors[:both], *bones[:both]]),
             anchor_stiffness=np.concatenate([np.tile(stiffness, both), springs.bone_stiffness]),
-            hold_targets=target, hold_stiffness=hold, **self._rest_shape(reference, jaw),
+            hold_targets=target, hold_stiffness=hold, **self._load(values, reference, jaw),
         )  # fmt: skip
         return Drive(control, reference, *moved, activity, contracted, guess)
 
     def expected(self, values: Mapping[str, float]) -> FloatArray:
         """Return the sum (n, 3) of what each muscle does alone, before the jaw [mm]."""
+        return self._sum(self.fields, values)
+
+    def _sum(self, parts: Mapping[str, FloatArray], values: Mapping[str, float]) -> FloatArray:
+        """Return the sum (n, 3) of `parts` (n, 3) by name, each times its control."""
         total = np.zeros_like(self.springs.skin.positions)
-        for name, field in self.fields.items():
+        # In the order of the parts, so that the order of the values does not matter.
+        for name, part in parts.items():
             amount = values.get(name, 0.0)
             if amount > 0.0:
-                total += min(amount, 1.0) * field
+                total += min(amount, 1.0) * part
         return total
+
+    def _load(
+        self, values: Mapping[str, float], reference: FloatArray, jaw: JawPose
+    ) -> dict[str, FloatArray]:
+        """Return the shape that springs rest in, and the load with what holds the lips together."""
+        shape = self._rest_shape(reference, jaw)
+        if not any(values.get(name, 0.0) > 0.0 for name in self.seals):
+            return shape
+        force = self._sum(self.seals, values)
+        if not jaw.at_rest:
+            rest, share = self.springs.skin.positions, self.mechanics.jaw_share
+            force = self.mechanics.jaw.move(rest + force, jaw, share=share) - reference
+        return {**shape, "load": shape.get("load", self.springs.network.load) + force}
 
     def _guess(self, values: Mapping[str, float], jaw: JawPose) -> FloatArray:
         """Return where the skin (n, 3) would be if all that muscles do alone added up [mm]."""

@@ -157,16 +157,23 @@ class SpringFace:
 
     def with_fields(self) -> SpringFace:
         """Return the face with what every muscle control does alone, so that muscles ride."""
-        alone = replace(self, driver=replace(self.driver, fields={}))
+        alone = replace(self, driver=replace(self.driver, fields={}, seals={}))
+        tight = replace(self.springs, network=self.springs.sealed)
+        sealed = replace(alone, springs=tight, driver=replace(alone.driver, springs=tight))
+        sealing = {m.action.control for m in self.muscles.muscles if m.action.seal}
         fields: dict[str, FloatArray] = {}
+        seals: dict[str, FloatArray] = {}
         partner = self.springs.skin.partner if self.parameters.even else None
         for control in self.muscles.controls:
             other = control.mirror
             if partner is not None and other != control.name and other in fields:
                 fields[control.name] = fields[other][partner] * MIRROR
             else:
-                fields[control.name] = alone.displace_skin({control.name: 1.0})
-        return replace(self, driver=replace(self.driver, fields=fields))
+                face = sealed if control.name in sealing else alone
+                fields[control.name] = face.displace_skin({control.name: 1.0})
+            if control.name in sealing:
+                seals[control.name] = self.springs.seal_forces(fields[control.name])
+        return replace(self, driver=replace(self.driver, fields=fields, seals=seals))
 
     def settled(self, values: Mapping[str, float]) -> tuple[Drive, Moved]:
         """Return what a pose asks of the springs and where they come to rest."""

@@ -134,6 +134,7 @@ def _action(outline: MuscleOutline, ground: Ground, edge: float) -> MuscleAction
         max_contraction=settings.max_contraction,
         stiffness=settings.stiffness,
         bulge=settings.bulge,
+        seal=settings.seal,
         host=settings.host,
         radius=radius,
         fixed_point=settings.fixed_point if ground.parameters.loose_origins else 0.0,

@@ -38,6 +38,8 @@ class MuscleAction:
         Place along the fibre that stays, 0 the origin (as published), 1 the insertion. A muscle
         that ends in a loose aponeurosis, such as the frontalis in the galea, draws both its ends
         together.
+    seal : bool
+        Whether the lips stay together while the muscle pulls at one of them.
     bulge : float
         Gain of height per strain: 2 as published.
     host : bool
@@ -50,6 +52,7 @@ class MuscleAction:
     radius: float = 8.0
     fixed_point: float = 0.0
     bulge: float = 2.0
+    seal: bool = False
     host: bool = True
 
 

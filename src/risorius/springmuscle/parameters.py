@@ -41,6 +41,8 @@ class SpringParameters:
         Stiffness of the edges in the lids over that of others.
     across : float
         Stiffness of springs from the lining of mouth and sockets to the skin in front of it.
+    seal : float
+        Stiffness of springs between touching lips while a muscle that seals them pulls.
     muscle_stiffness : float
         Of a spring from skin to muscle.
     mirrors : bool
@@ -98,6 +100,7 @@ class SpringParameters:
     least_stiffness: float = 0.1
     lid_softness: float = 1.0
     across: float = 0.0
+    seal: float = 0.0
     muscle_stiffness: float = 0.1
     mirrors: bool = True
     grip: float = 0.0
@@ -125,8 +128,8 @@ class SpringParameters:
             raise ParameterError(f"pretension: {pretension:g} must be below 1, edges keep a length")
         for name in (
             "knee_strain", "stiffening", "least_length", "least_stiffness", "lid_softness",
-            "across", "muscle_stiffness", "grip", "waking", "bone_stiffness", "jaw_stiffness",
-            "home", "tissue",
+            "across", "seal", "muscle_stiffness", "grip", "waking", "bone_stiffness",
+            "jaw_stiffness", "home", "tissue",
         ):  # fmt: skip
             as_number(name, getattr(self, name), low=0.0)
         as_number("resting", self.resting, low=0.0, high=1.0)
@@ -151,6 +154,7 @@ PROFILES: dict[str, SpringParameters] = {
         stiffening=0.0,
         lid_softness=0.3,
         across=0.5,
+        seal=1.0,
         muscle_stiffness=0.1,
         grip=0.3,
         resting=0.0,

@@ -128,6 +128,8 @@ class OutlineSettings:
         Place along the fibre that stays; see `MuscleAction`.
     bulge : float
         Gain of height per strain; see `MuscleAction`.
+    seal : bool
+        Whether the lips stay together while it pulls; see `MuscleAction`.
     host : bool
         Whether ends of other muscles merge with it; off for a second action on the same ring.
     """
@@ -139,6 +141,7 @@ class OutlineSettings:
     stiffness: float = 1.0
     fixed_point: float = 0.0
     bulge: float = 2.0
+    seal: bool = False
     host: bool = True
 
 

@@ -181,6 +181,7 @@ def _read_settings(record: Fields) -> OutlineSettings:
         stiffness=_number(record, "stiffness", 1.0, 0.0, 1000.0),
         fixed_point=_number(record, "fixed_point", 0.0, 0.0, 1.0),
         bulge=_number(record, "bulge", 2.0, 0.0, 20.0),
+        seal=_flag(record, "seal", False),
         host=_flag(record, "host", True),
     )
 
@@ -235,6 +236,7 @@ def _text(outline: MuscleOutline) -> str:
         "stiffness": settings.stiffness,
         "fixed_point": settings.fixed_point,
         "bulge": settings.bulge,
+        "seal": settings.seal,
         "host": settings.host,
     }
     defaults = {**asdict(OutlineSettings()), **_RING_DEFAULTS}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -34,10 +35,16 @@ _AREA = 8.0
 _SKIN, _LINING = 2.0, 3.0
 # Lining hangs on so many vertices of the skin in front of it, this near, that face away from it.
 _THREADS, _DEEP, _FACING = 3, 7.0, 0.0
+# Lips closer than this touch, within so many millimetres of their line [mm].
+_SEAL_GAP, _SEAL_REACH = 3.5, 5.0
 # Tissue holds lining this weakly, it goes with the skin.
 _LINED = 0.005
 # How much more strongly skin is held where it must be still, over a spring to a muscle.
 _STILL = 20.0
+
+
+def _no_pairs() -> IntArray:
+    return np.zeros((0, 2), np.int32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +79,10 @@ class SkinSprings:
         Stiffness of what draws the skin home, without grips.
     across_count : int
         How many edges, the last ones, run from lining to the skin in front of it.
+    seals : (q, 2) int32
+        Vertices of the upper and the lower lip that touch.
+    seal_stiffness : float
+        Of springs that hold them together while a muscle that seals the lips pulls.
     """
 
     skin: Skin
@@ -90,11 +101,33 @@ class SkinSprings:
     bone_stiffness: FloatArray
     tissue: FloatArray
     across_count: int = 0
+    seals: IntArray = field(default_factory=_no_pairs)
+    seal_stiffness: float = 0.0
 
-    @property
-    def muscle_spring_count(self) -> int:
-        """Number of springs to muscles, partners not counted."""
-        return len(self.vertices)
+    @cached_property
+    def sealed(self) -> SpringNetwork:
+        """The network with the lips held together."""
+        network, count = self.network, len(self.seals)
+        k = np.full(count, self.seal_stiffness)
+        return replace(
+            network,
+            edges=np.concatenate([network.edges, self.seals]),
+            rest_lengths=np.concatenate([network.rest_lengths, np.zeros(count)]),
+            stiffness=np.concatenate([network.stiffness, k]),
+            knee_lengths=np.concatenate([network.knee_lengths, np.full(count, np.inf)]),
+            load=network.load - self.seal_forces(self.skin.positions),
+            mass=np.zeros(0),
+        )
+
+    def seal_forces(self, moved: FloatArray) -> FloatArray:
+        """Return the forces (n, 3) between sealed lips displaced by `moved` (n, 3) [mm]."""
+        upper, lower = self.seals.T
+        pull = self.seal_stiffness * (moved[lower] - moved[upper])
+        forces = np.zeros_like(moved)
+        for axis in range(3):
+            forces[:, axis] = np.bincount(upper, pull[:, axis], len(moved))
+            forces[:, axis] -= np.bincount(lower, pull[:, axis], len(moved))
+        return forces
 
 
 def build_springs(
@@ -169,6 +202,7 @@ def build_springs(
     return SkinSprings(
         skin, network, vertices, segments, numbers, feet, partners, rest_feet, stiffness, shares,
         bone_vertices, bone_feet, on_jaw, np.tile(bone_stiffness, both), tissue, len(through),
+        _touching(skin), p.seal * unit,
     )  # fmt: skip
 
 
@@ -193,6 +227,22 @@ def _across(skin: Skin, sides: npt.NDArray[np.int8]) -> IntArray:
     long = np.linalg.norm(skin.positions[first] - skin.positions[second], axis=1) > 1e-3
     kept = facing & long & (sides[first] == sides[second])
     return np.stack([first[kept], second[kept]], axis=1).astype(np.int32)
+
+
+def _touching(skin: Skin) -> IntArray:
+    """Return pairs (q, 2) of the upper and the lower lip that touch: each with its nearest."""
+    near = (skin.mouth.distance < _SEAL_REACH) & ~skin.hidden
+    upper, lower = (np.flatnonzero(near & (side * skin.mouth.side > 0.0)) for side in (1.0, -1.0))
+    if not (len(upper) and len(lower)):
+        return np.zeros((0, 2), np.int32)
+    limit = _SEAL_GAP * skin.scale
+    parts: list[npt.NDArray[np.intp]] = []
+    for own, other, turned in ((upper, lower, False), (lower, upper, True)):
+        gap, nearest = cKDTree(skin.positions[other]).query(skin.positions[own])
+        kept = np.asarray(gap) < limit
+        pairs = np.stack([own[kept], other[nearest[kept]]], axis=1)
+        parts.append(pairs[:, ::-1] if turned else pairs)
+    return np.unique(np.concatenate(parts), axis=0).astype(np.int32)
 
 
 def _with_lids(sides: npt.NDArray[np.int8], mechanics: Mechanics) -> npt.NDArray[np.int8]:
@@ -243,9 +293,8 @@ def _bind(
         stiffness = muscle.action.stiffness * share * strength[found.vertices]
         kept = stiffness > 0.0
         numbers = np.full(int(kept.sum()), number, np.int32)
-        columns = (found.vertices, found.segments, found.feet, stiffness, share)
-        vertices, segments, feet, stiffness, share = (column[kept] for column in columns)
-        parts.append((vertices, segments, numbers, feet, stiffness, share))
+        where = found.vertices[kept], found.segments[kept], numbers
+        parts.append((*where, found.feet[kept], stiffness[kept], share[kept]))
     if not parts:
         none = np.zeros(0, np.int32)
         return none, none, none, np.zeros((0, 3)), np.zeros(0), np.zeros(0)
