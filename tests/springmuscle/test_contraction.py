@@ -261,7 +261,10 @@ def test_wrong_sizes_are_refused_with_what_was_expected() -> None:
         Contraction(_set())([0.1, 0.2])
     with pytest.raises(ShapeError, match="expected 5 rows"):
         Contraction(_set())([0.1], points=BENT[:3])
-    with pytest.raises(ParameterError, match="points 1 and 2 are the same; merge them"):
+    with (
+        np.errstate(invalid="ignore"),
+        pytest.raises(ParameterError, match="points 1 and 2 are the same; merge them"),
+    ):
         fibre(np.array([[0.0, 0, 0], [1, 0, 0], [1, 0, 0]]), UP)
     with pytest.raises(ParameterError, match="bent is there twice"):
         MuscleSet((*_set().muscles, *_set().muscles))

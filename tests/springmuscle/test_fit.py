@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from risorius.anatomy.jaw import JawPose
-from risorius.errors import ParameterError
+from risorius.errors import ParameterError, RisoriusWarning
 from risorius.springmuscle.bones import builtin_bones
 from risorius.springmuscle.contraction import Contraction
 from risorius.springmuscle.ellipsoid import Ellipsoids
@@ -17,6 +17,7 @@ from risorius.springmuscle.fit_parameters import FitParameters
 from risorius.springmuscle.muscle import JAW, SKULL
 from risorius.springmuscle.muscle_set import MuscleSet
 from risorius.springmuscle.recipe_file import default_recipe
+from tests.face_fixtures import made_up_mechanics
 from tests.springmuscle.coarse import coarse_mechanics
 from tests.springmuscle.faces import builtin_mechanics
 from tests.springmuscle.skins import builtin_ground, builtin_muscles
@@ -235,3 +236,16 @@ def test_a_turning_ring_needs_a_line() -> None:
     assert outline.ring is not None
     with pytest.raises(ParameterError, match="turns about a line, but has none"):
         replace(outline, ring=replace(outline.ring, line=()))
+
+
+def test_landmarks_that_a_head_lacks_are_guessed_with_a_warning() -> None:
+    mechanics = made_up_mechanics()
+    assert "4.1" not in mechanics.head.landmarks
+    with pytest.warns(RisoriusWarning, match=r"4\.1.* are guessed from the others"):
+        ground = Ground.build(mechanics, builtin_bones(mechanics))
+    muscles = fit_muscles(default_recipe(), ground)
+    assert len(muscles.muscles) == len(builtin_muscles().muscles)
+    assert np.median([m.report.inside for m in muscles.muscles]) >= 0.95
+    guessed, eye = (ground.surface.measure.landmarks[name] for name in ("4.1", "3.11"))
+    assert guessed[1] > eye[1]
+    assert guessed[0] > 0.0

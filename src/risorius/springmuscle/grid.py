@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.outwards import unit
-from risorius.errors import ParameterError
+from risorius.errors import LandmarkError, ParameterError
 from risorius.springmuscle.fit_parameters import FitParameters
 from risorius.springmuscle.kernels.layer import cast_lines
 from risorius.springmuscle.recipe import MuscleOutline, thickness_at
@@ -54,11 +54,9 @@ class Layer:
     Parameters
     ----------
     outline : MuscleOutline
+        What it sets goes before the parameters.
     surface : SkinSurface
-    skin : float or mapping of str to float
-        Thickness of the skin [mm at the reference width].
-    least, most : float
-        Thickness of the muscle [mm].
+    parameters : FitParameters
     """
 
     outline: MuscleOutline
@@ -88,7 +86,7 @@ class Layer:
         return flat.reshape(points.shape[:-1])
 
     def start(self, points: FloatArray) -> FloatArray:
-        """Return the depth (q,) to place `points` (q, 3) at, tau_s + (tau_min + tau_max) / 4 [mm]."""
+        """Return the depth (q,) for `points` (q, 3): tau_s + (tau_min + tau_max) / 4 [mm]."""
         return self.skin(points) + 0.25 * (self.least + self.most)
 
     def range(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -164,7 +162,10 @@ def lay_out(outline: MuscleOutline, surface: SkinSurface) -> Layout:
     ParameterError
         If a row's points coincide, or two rows cross.
     """
-    rows = [np.array([p.place(surface.measure) for p in row]) for row in outline.rows]
+    try:
+        rows = [np.array([p.place(surface.measure) for p in row]) for row in outline.rows]
+    except LandmarkError as error:
+        raise LandmarkError(f"outline {outline.name}: {error}") from None
     count = max(len(row) for row in rows)
     filled = [_filled(row, count, f"outline {outline.name}: row {n}") for n, row in enumerate(rows)]
     points = np.array(filled)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import warnings
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +14,9 @@ from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.outwards import unit
 from risorius.anatomy.skull_fit import hidden_skin
+from risorius.anatomy.template import SURE_LANDMARKS, builtin_head, warp_between
+from risorius.errors import RisoriusWarning
+from risorius.head.head import Head
 from risorius.mesh.connectivity import Neighbours, vertex_neighbours
 from risorius.mesh.core import TriMesh
 from risorius.mesh.laplacian import averaging
@@ -67,9 +71,17 @@ class SkinSurface:
 
     @staticmethod
     def build(mechanics: Mechanics) -> SkinSurface:
-        """Measure the skin of a head whose moving parts are known."""
+        """Measure the skin of a head whose moving parts are known.
+
+        Landmarks that the head lacks are carried over from the built-in head, with a warning.
+
+        Raises
+        ------
+        LandmarkError
+            If outer eye corners or inner lips are missing, or fewer than eight landmarks are known.
+        """
         mesh = mechanics.head.skin.mesh
-        measure = FaceMeasure.of(mechanics.head.landmarks)
+        measure = _completed(FaceMeasure.of(mechanics.head.landmarks), mechanics.head)
         normals = vertex_normals(mesh.positions, mesh.faces)
         average, broad = averaging(mesh.faces, mesh.vertex_count), normals
         for _ in range(_SMOOTHING):
@@ -152,6 +164,23 @@ class SkinSurface:
         hits = self.scene.cast(start, -ahead, max_distance=_REACH * self.scale)
         found = np.where(hits.hit[:, None], np.nan_to_num(hits.positions), points)
         return found, hits.hit
+
+
+def _completed(measure: FaceMeasure, head: Head) -> FaceMeasure:
+    """Return `measure` with the landmarks that outlines hang on, guessed where missing."""
+    template = builtin_head().landmarks
+    missing = [name for name in SURE_LANDMARKS if name not in measure.landmarks]
+    if not missing:
+        return measure
+    warp = warp_between(template, head.landmarks)
+    guessed = dict(zip(missing, warp(template.positions(missing))))
+    warnings.warn(
+        f"landmarks: {', '.join(missing)} are guessed from the others, muscles there may lie "
+        "wrong; add them to the landmark file",
+        RisoriusWarning,
+        stacklevel=4,
+    )
+    return replace(measure, landmarks={**measure.landmarks, **guessed})
 
 
 def label_lips(
