@@ -8,9 +8,11 @@ import pytest
 from risorius.controls import default_presets
 from risorius.controls.control import Pose
 from risorius.errors import FormatError
+from risorius.layered.faithful import FaithfulFace
 from risorius.playback.live import LivePlayer, rig_of_singles
 from risorius.playback.motion_basis import motion_basis
 from risorius.rig import Face, Rig
+from risorius.springmuscle.face import SpringFace
 from tests.face_fixtures import builtin_face
 from tests.io.motion.streams import stream_of
 
@@ -107,3 +109,27 @@ def test_motion_that_is_none_or_absent() -> None:
     assert motion_basis(_rig(), [rest, rest], source="x").weights.shape == (2, 0)
     with pytest.raises(FormatError, match="x: holds no frames"):
         motion_basis(_rig(), [], source="x")
+
+
+def test_a_face_of_springs_plays_its_physics_and_the_same_bytes_again() -> None:
+    face = SpringFace.build(builtin_face().head)
+    rig = rig_of_singles(face, default_presets())
+    player = LivePlayer(face, rig, stream_of(TAKE))
+    assert player.has_physics
+    first, second = list(player.positions()), list(player.positions())
+    np.testing.assert_array_equal(first, second)
+    # It follows the stream, and is not yet where the pose at rest would be.
+    opened = rig.frame.to_input(face.pose(player.pose_of(TAKE[3])))
+    unturned = [posed for posed, _ in player._simulated()]
+    apart = [float(np.abs(opened - posed).max()) for posed in unturned]
+    assert apart[3] < 0.5 * apart[0]
+
+
+def test_the_published_layered_face_plays_its_physics() -> None:
+    face = FaithfulFace.build(builtin_face().head)
+    rig = _rig().subset(["jaw_pitch", "zygomaticus_major_l"])
+    player = LivePlayer(face, rig, stream_of([{"jaw_pitch": 0.0}, {"jaw_pitch": 1.0}]))
+    assert player.has_physics
+    closed, opening = player.positions()
+    np.testing.assert_allclose(closed, rig.mesh.positions, atol=1e-3)
+    assert np.abs(opening - closed).max() > 5.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ from risorius.controls.fap import Fap, faps
 from risorius.head.head import Head
 from risorius.landmarks.landmark_set import LandmarkSet, resolve
 from risorius.playback.face_units import face_units
+from risorius.playback.tongue_points import TONGUE_PARTS, tongue_points
 from risorius.rig.rig import Rig
 
 __all__ = ["DIRECTIONS", "FapReading"]
@@ -27,6 +28,7 @@ DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
 """Unit vectors (3,) of the ways in which points go, canonical frame."""
 
 _EYES = {"3.5": "eye_left", "3.6": "eye_right"}
+_PARTS = (*_EYES.values(), *TONGUE_PARTS)
 _FEWEST = 12  # vertices by which an eye's turn can be told
 _WHY_NOT = {
     "grow": "pupils are painted, not moved",
@@ -71,12 +73,12 @@ class FapReading:
     @staticmethod
     def of_head(head: Head) -> FapReading:
         """Return the reading of a head."""
-        eyes = {
-            pupil: np.asarray(head.parts[kind].source, np.intp)
-            for pupil, kind in _EYES.items()
+        parts = {
+            kind: np.asarray(head.parts[kind].source, np.intp)
+            for kind in _PARTS
             if kind in head.parts
         }
-        return FapReading.build(head.positions, head.landmarks, eyes)
+        return FapReading.build(head.positions, head.landmarks, parts)
 
     @staticmethod
     def of_rig(rig: Rig) -> FapReading:
@@ -91,20 +93,22 @@ class FapReading:
         marks = LandmarkSet((), positions)
         if rig.landmarks:
             marks = resolve(rig.landmarks, rig.mesh).at(positions)
-        eyes = {
-            pupil: np.flatnonzero(rig.part_of_vertex == rig.part_names.index(kind))
-            for pupil, kind in _EYES.items()
+        parts = {
+            kind: np.flatnonzero(rig.part_of_vertex == rig.part_names.index(kind))
+            for kind in _PARTS
             if kind in rig.part_names
         }
-        return FapReading.build(positions, marks, eyes)
+        return FapReading.build(positions, marks, parts)
 
     @staticmethod
     def build(
         positions: FloatArray,
         landmarks: LandmarkSet,
-        eyes: Mapping[str, npt.NDArray[np.intp]],
+        parts: Mapping[str, npt.NDArray[np.intp]],
     ) -> FapReading:
-        """Bind the table of parameters to `positions` (n, 3) [mm] and landmarks.
+        """Bind the table of parameters to `positions` (n, 3) [mm], landmarks and parts' vertices.
+
+        Points of the tongue that have no landmark are found by its shape.
 
         Raises
         ------
@@ -112,11 +116,13 @@ class FapReading:
             If the face's units cannot be measured.
         """
         units = face_units(landmarks)
+        eyes = {pupil: parts[kind] for pupil, kind in _EYES.items() if kind in parts}
         round_eyes = {name: rows for name, rows in eyes.items() if len(rows) >= _FEWEST}
+        found = tongue_points(positions, parts, landmarks)
         kept: list[Fap] = []
         left_out: dict[int, str] = {}
         for fap in faps().values():
-            reason = _why_not(fap, landmarks, round_eyes)
+            reason = _why_not(fap, {*landmarks, *found}, round_eyes)
             if reason:
                 left_out[fap.number] = reason
             else:
@@ -128,6 +134,8 @@ class FapReading:
                 mark = landmarks[fap.point]
                 vertices[row, : len(mark.vertices)] = mark.vertices
                 shares[row, : len(mark.vertices)] = mark.weights
+            elif fap.point in found:
+                vertices[row, 0], shares[row, 0] = found[fap.point], 1.0
         return FapReading(
             positions,
             tuple(fap.number for fap in kept),
@@ -172,7 +180,7 @@ class FapReading:
 
 
 def _why_not(
-    fap: Fap, landmarks: LandmarkSet, eyes: Mapping[str, npt.NDArray[np.intp]]
+    fap: Fap, points: Collection[str], eyes: Mapping[str, npt.NDArray[np.intp]]
 ) -> str | None:
     if fap.turns_head:
         return _WHY_NOT["head"]
@@ -180,4 +188,4 @@ def _why_not(
         return _WHY_NOT[fap.way]
     if fap.point in _EYES:
         return None if fap.point in eyes else f"the head has no {_EYES[fap.point]}"
-    return None if fap.point in landmarks else f"the head has no landmark {fap.point}"
+    return None if fap.point in points else f"the head has no landmark {fap.point}"

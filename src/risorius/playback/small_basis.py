@@ -69,7 +69,7 @@ class SmallBasis:
 
         def frames() -> Iterator[StreamFrame]:
             for frame, row in zip(stream, weights):
-                values = dict(zip(names, self.weights([row])[0].tolist()))
+                values = dict(zip(names, self.weights(np.asarray(row)[None])[0].tolist()))
                 values |= dict(zip(turns, head_turn_of(frame.values)))
                 yield StreamFrame(frame.time, values)
 
