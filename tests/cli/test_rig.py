@@ -272,6 +272,16 @@ def test_the_profile_changes_the_shapes(tmp_path: Path) -> None:
     assert np.abs(improved - faithful).max() > 0.1
 
 
+def test_spring_muscles_stand_on_the_bones_that_were_asked_for(tmp_path: Path) -> None:
+    out = tmp_path / "face.npz"
+    options = ("--method", "springs", "--bones", "cut", "--shapes", "emotions")
+    assert run("rig", "builtin", "-o", out, *options).exit_code == 0
+    assert {"joy", "fear"} <= {target.name for target in Rig.load(out).targets}
+    result = run("rig", "builtin", "-o", out, "--method", "springs", "--bones", "given")
+    assert result.exit_code == 1
+    assert "'given' needs a skull; name it with --skull" in result.stderr
+
+
 @pytest.mark.parametrize("name", ["face.glb/", "v1.2/"])
 def test_a_new_folder_with_an_ending_is_refused_before_the_work(tmp_path: Path, name: str) -> None:
     result = run("rig", "builtin", "-o", f"{tmp_path}/{name}")

@@ -54,7 +54,8 @@ class Project:
     parameters : mapping of str to value
         Parameters of the method that differ from its profile.
     vector_set, muscle_map, recipe, presets : Path or None
-        Recipes of the methods (outlines of spring muscles: `recipe`) and poses; None for those that ship with risorius.
+        Recipes of the methods (outlines of spring muscles: `recipe`) and poses; None for those
+        that ship with risorius.
     bones : str or None
         Where spring muscles find their bones, one of `BONES`; None for the given skull, else the
         built-in one.

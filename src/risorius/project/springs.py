@@ -44,8 +44,8 @@ def spring_face(project: Project, head: Head, mechanics: Mechanics | None) -> Fa
     way = project.bones or ("builtin" if project.skull is None else "given")
     skull = _skull(project, way)
     return SpringFace.build(
-        head, recipe_of(project), bones=cast(BoneWay, way), skull=skull, profile=profile, mechanics=mechanics,
-        parameters=_parameters(project, SpringParameters.of_profile(profile)),
+        head, recipe_of(project), bones=cast(BoneWay, way), skull=skull, profile=profile,
+        mechanics=mechanics, parameters=_parameters(project, SpringParameters.of_profile(profile)),
     )  # fmt: skip
 
 
@@ -79,5 +79,8 @@ def _parameters(project: Project, base: SpringParameters) -> SpringParameters:
                 f"{', '.join(numbers)}"
             )
         number = as_number(f"parameters: {name}", value)
-        changed[name] = int(number) if isinstance(numbers[name], int) else number
+        whole = isinstance(numbers[name], int)
+        if whole and not number.is_integer():
+            raise ParameterError(f"parameters: {name}: {number:g} is not a whole number")
+        changed[name] = int(number) if whole else number
     return replace(base, **changed)

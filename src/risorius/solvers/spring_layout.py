@@ -75,10 +75,10 @@ class PackLayout:
     block_count : int
     edge_start : (b + 1,) int64
         First slot of each block.
-    neighbours : (slots * PACK,) uint32
+    neighbours : (s,) uint32
         Row of the other end of each edge.
-    edge_place : (2 e,) int64
-        Entry of each edge, seen from its first ends and then from its second ends: slot * PACK +
+    edge_place : (h,) int64
+        Entry of each edge twice, seen from its first ends and then from its second ends: slot * PACK +
         lane.
     """
 

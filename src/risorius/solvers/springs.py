@@ -196,7 +196,7 @@ class SpringControl:
     load: FloatArray | None = None
 
     def resolved(self, network: SpringNetwork) -> dict[str, FloatArray]:
-        """Return every array, checked against a network.
+        """Return every array by name, such as ``"load"`` (n, 3), checked against a network.
 
         Raises
         ------

@@ -73,8 +73,8 @@ class SkinSprings:
     bone_feet : (b, 3) float64
         [mm].
     on_jaw : (b,) bool
-    bone_stiffness : (2 b,) float64
-        Of their springs and of the partners, if there are any.
+    bone_stiffness : (c,) float64
+        Of their springs, then of the partners if there are any.
     tissue : (n,) float64
         Stiffness of what draws the skin home, without grips.
     across_count : int
