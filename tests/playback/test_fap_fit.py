@@ -86,3 +86,20 @@ def test_a_real_stream_is_followed_where_the_face_can(real_data: Path, fit: FapF
             differences.setdefault(name, []).append(made[name] - frame.values[name])
     for name, found in differences.items():
         assert np.sqrt(np.square(found).mean()) < 40.0, name
+
+
+def test_a_parameter_alone_moves_its_point_by_what_is_asked_where_muscles_reach(
+    fit: FapFit,
+) -> None:
+    met = set()
+    for number in fit.reading.numbers:
+        fap = faps()[number]
+        for sign in (1,) if fap.one_way else (1, -1):
+            asked = {fap.target: 100.0 * sign}
+            made = fit.values(fit.weights(asked))[fap.target]
+            assert sign * made < 110.0
+            if sign * made > 90.0:
+                met.add(number)
+    # Ears, pupils and bulging eyes have no muscles; the turns of the head are no weights.
+    assert len(met) >= 45
+    assert {3, 4, 5, 6, 7, 12, 13, 14, 16, 19, 20, 23, 24, 25, 26, 31, 32, 45, 51, 52} <= met

@@ -1,14 +1,20 @@
 from __future__ import annotations
 
+import warnings
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from risorius.controls.control import resolve_pose
 from risorius.controls.fap import faps
 from risorius.controls.shape_sets import ShapeList
+from risorius.errors import RisoriusWarning
+from risorius.head import Head
 from risorius.playback import FapReading, FapShapes, solve_fap_shapes
 from risorius.playback.bounded_fit import fit_bounded
 from risorius.playback.solved_sets import with_solved_sets
+from risorius.vectormuscle import VectorFace
 from tests.face_fixtures import builtin_face
 
 CHOSEN = (3, 6, 7, 12, 13, 14, 19, 24, 64, 65)
@@ -78,3 +84,22 @@ def test_a_bounded_fit_meets_the_conditions_of_optimality() -> None:
     assert (slope[x == 0.2] < 1e-3).all()
     assert (x == 0.0).any()
     assert (x == 0.2).any()
+
+
+@pytest.mark.real
+def test_a_real_head_makes_fifty_of_the_parameters(real_data: Path) -> None:
+    path = real_data / "ict_facekit" / "ict_neutral.obj"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RisoriusWarning)
+        face = VectorFace.build(Head.load(path, path.with_name("landmarks.json")))
+    solved = solve_fap_shapes(face)
+    assert solved.turns == (48, 49, 50)
+    assert solved.made_count >= 53
+    assert solved.full_count >= 48
+    assert solved.bound_count >= 14
+
+
+def test_the_built_in_head_makes_fifty_of_the_parameters() -> None:
+    solved = solve_fap_shapes(builtin_face())
+    assert solved.made_count >= 55
+    assert solved.full_count >= 47

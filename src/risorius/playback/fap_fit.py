@@ -26,7 +26,7 @@ __all__ = ["FapFit"]
 
 _ENOUGH = 20  # targets of one set that can stand for a whole face
 _PREFERENCE = ("singles", "fap", "arkit", "facs")
-_ABSENT = 1e-2  # weight of parameters that a frame says nothing of
+_ABSENT = 3e-3  # weight of parameters that a frame says nothing of
 _EFFORT = 4e-3  # cost of a full weight [mm^2]
 _EASINGS = (1.0, 0.01)  # of the effort, from one round to the next
 _EYE_RADIUS = 12.0  # length at which a turn counts [mm]
