@@ -156,3 +156,17 @@ def test_bones_of_a_symmetric_head_are_symmetric() -> None:
     flipped = np.lexsort(np.round(points * MIRROR, 6).T)
     same = found.bones[order] == found.bones[flipped]
     assert same.mean() > 0.995
+
+
+def test_an_upper_lip_never_lies_on_the_jaw_nor_a_lower_one_on_the_skull() -> None:
+    surface = surface_of(lambda x, y: 0.0 * x, count=9)
+    x = surface.mesh.positions[:, 0]
+    plate = TriMesh(surface.mesh.positions - [0.0, 0.0, 5.0], surface.mesh.faces)
+    nothing = TriMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int32))
+    sides = np.sign(np.round(x)).astype(np.int8)
+    split = replace(surface, sides=sides)
+    on_jaw = Bones(nothing, plate, "given").under(split, max_depth=9.0).bones
+    on_skull = Bones(plate, nothing, "given").under(split, max_depth=9.0).bones
+    inner = np.abs(surface.mesh.positions[:, :2]).max(axis=1) < 39.0
+    assert (on_jaw[inner] == np.where(sides > 0, 0, JAW)[inner]).all()
+    assert (on_skull[inner] == np.where(sides < 0, 0, SKULL)[inner]).all()

@@ -268,3 +268,37 @@ def test_wrong_sizes_are_refused_with_what_was_expected() -> None:
         fibre(np.array([[0.0, 0, 0], [1, 0, 0], [1, 0, 0]]), UP)
     with pytest.raises(ParameterError, match="bent is there twice"):
         MuscleSet((*_set().muscles, *_set().muscles))
+
+
+def test_ellipsoids_turn_with_their_segments() -> None:
+    muscles = _set()
+    turn = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
+    moved = Contraction(muscles)([0.3], points=muscles.points @ turn.T)
+    along = np.diff(moved.points, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    first = moved.axes[:, :, 0] / np.linalg.norm(moved.axes[:, :, 0], axis=1, keepdims=True)
+    assert np.abs(first - along).max() < 1e-9
+    gram = moved.axes.transpose(0, 2, 1) @ moved.axes
+    assert np.abs(gram[:, 0, 1:]).max() < 1e-9
+
+
+def test_a_pulled_ring_stays_closed() -> None:
+    ring = _ring(np.zeros(3)).muscles[0]
+    start = ring.fibres[0].points[0]
+    guest = muscle("guest", [fibre(np.linspace(start + [25.0, 3.0, 0.0], start, 6), UP)])
+    muscles = merge_muscles((ring, guest), yielding=1.0)
+    assert len(muscles.links.ends) >= 1
+    moved = Contraction(muscles)([0.0, 0.5]).points
+    last = len(ring.fibres[0].points) - 1
+    assert (moved[0] == moved[last]).all()
+    assert np.linalg.norm(moved[0] - start) > 1.0
+
+
+def test_the_origin_of_a_host_stays_on_its_bone() -> None:
+    host = muscle("host", [fibre(np.linspace([20, -15, 0], [20.0, 15, 0], 4), UP)])
+    guest = muscle("guest", [fibre(np.linspace([-10, -10, 0], [20, -10.0, 0], 6), UP)])
+    muscles = merge_muscles((host, guest), yielding=1.0)
+    assert muscles.links.hosts[0, 1] == 0
+    moved = Contraction(muscles)([0.0, 0.6]).points
+    assert (moved[0] == muscles.points[0]).all()
+    assert np.linalg.norm(moved[1] - muscles.points[1]) > 0.5

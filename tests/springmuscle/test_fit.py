@@ -249,3 +249,17 @@ def test_landmarks_that_a_head_lacks_are_guessed_with_a_warning() -> None:
     guessed, eye = (ground.surface.measure.landmarks[name] for name in ("4.1", "3.11"))
     assert guessed[1] > eye[1]
     assert guessed[0] > 0.0
+
+
+def test_rings_are_closed_and_lids_are_drawn_to_a_line() -> None:
+    for muscle in builtin_muscles().muscles:
+        for fibre in muscle.fibres:
+            assert (fibre.points[0] == fibre.points[-1]).all() == muscle.closed
+    eye = _muscle("orbicularis_oculi_l").fibres[0]
+    marks = builtin_ground().surface.measure.landmarks
+    inner, outer = marks["3.11"][0], marks["3.7"][0]
+    between = (eye.points[:, 0] > inner) & (eye.points[:, 0] < outer)
+    assert between.sum() > 5
+    assert np.abs(eye.aims - eye.points)[between, 0].max() < 2.0
+    assert (eye.aims[:, 0] > inner - 1.0).all()
+    assert (eye.aims[:, 0] < outer + 1.0).all()
