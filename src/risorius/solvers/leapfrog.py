@@ -217,7 +217,7 @@ class PackedRun:
         layout = network.layout
         self._x = layout.vectors(state.positions - self._centre)
         self._v = layout.vectors(state.velocities)
-        self._rows = layout.rows(self._x)
+        self._rows = layout.rows(self._x, self._fixed - self._centre)
         self._forces = np.zeros_like(self._x)
         self._peak = np.zeros(PACK, np.float32)
         self._tables = self._tables_of(control)
@@ -231,9 +231,8 @@ class PackedRun:
     def shift(self, motion: FloatArray) -> None:
         """Move the particles by `motion` (n, 3) [mm]; fixed ones stay."""
         layout = self._network.layout
-        free = np.where(self._network.fixed[:, None], 0.0, motion)
-        self._x += layout.vectors(free)
-        self._rows = layout.rows(self._x)
+        self._x += layout.vectors(motion)
+        self._rows = layout.rows(self._x, self._fixed - self._centre)
 
     def advance(self, steps: int) -> int:
         """Take `steps` steps, fewer if the network comes to rest; return how many.

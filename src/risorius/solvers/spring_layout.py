@@ -10,7 +10,7 @@ import numpy.typing as npt
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from risorius._check import FloatArray, IntArray
+from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.solvers.kernels.simd import PACK
 from risorius.solvers.kernels.tables import aligned_zeros
 
@@ -18,7 +18,7 @@ __all__ = ["PackLayout", "PackTables", "SpringTables", "pack_layout"]
 
 Table = npt.NDArray[Any]
 # Neighbours stay this near to each other in memory, so that the fast cache holds them.
-_WINDOW = 4096
+_WINDOW = 2048
 
 
 class SpringTables(NamedTuple):
@@ -67,31 +67,37 @@ class PackLayout:
 
     Parameters
     ----------
-    order : (n,) int32
-        Particles in the order of the blocks: neighbours near each other, and among those the ones
-        with the most edges first, so that the particles of a block have about as many.
+    order : (f,) int32
+        Particles that move in the order of the blocks: neighbours near each other, and among those
+        the ones with the most edges first, so that the particles of a block have about as many.
+    fixed : (m,) int32
+        Particles that never move; their rows lie behind the blocks, nothing is computed for them.
     rank : (n,) int64
-        Place of each particle in this order.
+        Row of each particle.
     block_count : int
     edge_start : (b + 1,) int64
         First slot of each block.
     neighbours : (s,) uint32
         Row of the other end of each edge.
     edge_place : (h,) int64
-        Entry of each edge twice, seen from its first ends and then from its second ends: slot * PACK +
-        lane.
+        Entry of each edge, seen from its first ends and then from its second ends, those that
+        move: slot * PACK + lane.
+    edge_number : (h,) int64
+        Which edge that is.
     """
 
     order: IntArray
+    fixed: IntArray
     rank: npt.NDArray[np.int64]
     block_count: int
     edge_start: npt.NDArray[np.int64]
     neighbours: npt.NDArray[np.uint32]
     edge_place: npt.NDArray[np.int64]
+    edge_number: npt.NDArray[np.int64]
 
     @property
     def padded_count(self) -> int:
-        """Number of particles with those that fill up the last block."""
+        """Number of particles that move, with those that fill up the last block."""
         return self.block_count * PACK
 
     def vectors(self, values: FloatArray) -> Table:
@@ -103,9 +109,9 @@ class PackLayout:
         return result
 
     def vectors_back(self, table: Table) -> FloatArray:
-        """Return vectors (n, 3) of the particles from what the kernel keeps."""
+        """Return vectors (n, 3) of the particles from what the kernel keeps, 0 of fixed ones."""
         rows = table.reshape(-1, 3, PACK).swapaxes(1, 2).reshape(-1, 3)
-        result = np.empty((len(self.order), 3))
+        result = np.zeros((len(self.rank), 3))
         result[self.order] = rows[: len(self.order)]
         return result
 
@@ -115,15 +121,19 @@ class PackLayout:
         result[: len(self.order)] = values[self.order]
         return result
 
-    def rows(self, vectors: Table) -> Table:
-        """Return the rows x, y, z, 0 (4 padded,) of vectors (3 padded,)."""
-        result = aligned_zeros(4 * self.padded_count, np.float32)
-        result.reshape(-1, 4)[:, :3] = vectors.reshape(-1, 3, PACK).swapaxes(1, 2).reshape(-1, 3)
+    def rows(self, vectors: Table, fixed: FloatArray) -> Table:
+        """Return the rows x, y, z, 0 (4r,) of vectors (3 padded,) and of fixed particles (m, 3)."""
+        result = aligned_zeros(4 * (self.padded_count + len(self.fixed)), np.float32)
+        rows = result.reshape(-1, 4)
+        moving = vectors.reshape(-1, 3, PACK).swapaxes(1, 2).reshape(-1, 3)
+        rows[: self.padded_count, :3] = moving
+        rows[self.padded_count :, :3] = fixed
         return result
 
     def edge_fields(self, *fields: FloatArray) -> Table:
         """Return numbers (e,) of the edges side by side as the kernel keeps them."""
-        return _fields([np.tile(field, 2) for field in fields], self.edge_place, self.edge_start)
+        spread = [field[self.edge_number] for field in fields]
+        return _fields(spread, self.edge_place, self.edge_start)
 
     def anchor_fields(
         self, anchored: IntArray, *fields: FloatArray
@@ -133,31 +143,38 @@ class PackLayout:
         `anchored` (a,) are their particles; laid out anew each time, since most of the springs of
         a network may be slack.
         """
-        place, start = _slots(self.rank[anchored], self.block_count)
-        return start, _fields(list(fields), place, start)
+        ranks = self.rank[anchored]
+        moving = ranks < self.padded_count
+        place, start = _slots(ranks[moving], self.block_count)
+        return start, _fields([field[moving] for field in fields], place, start)
 
     def own_rows(self) -> Table:
-        """Return the row (padded,) of each particle, in entries."""
+        """Return the row (padded,) of each particle that moves, in entries."""
         return (4 * np.arange(self.padded_count)).astype(np.uint32)
 
 
-def pack_layout(edges: IntArray, particle_count: int) -> PackLayout:
-    """Lay out `edges` (e, 2) between so many particles."""
-    ends = edges.T.ravel()
-    degree = np.bincount(ends, minlength=particle_count)
-    near = _near_order(edges, particle_count)
-    window = np.arange(particle_count) // _WINDOW
-    order = near[np.lexsort((-degree[near], window))]
-    rank = np.empty(particle_count, np.int64)
-    rank[order] = np.arange(particle_count)
-    blocks = max(1, -(-particle_count // PACK))
-    edge_place, edge_start = _slots(rank[ends], blocks)
+def pack_layout(edges: IntArray, fixed: BoolArray) -> PackLayout:
+    """Lay out `edges` (e, 2) between particles of which some are `fixed` (n,)."""
+    count = len(fixed)
+    ends, others = edges.T.ravel(), edges[:, ::-1].T.ravel()
+    degree = np.bincount(ends, minlength=count)
+    near = _near_order(edges, count)
+    near = near[~fixed[near]]
+    order = near[np.lexsort((-degree[near], np.arange(len(near)) // _WINDOW))]
+    blocks = max(1, -(-len(order) // PACK))
+    still = np.flatnonzero(fixed).astype(np.int32)
+    rank = np.empty(count, np.int64)
+    rank[order] = np.arange(len(order))
+    rank[still] = blocks * PACK + np.arange(len(still))
+    moving = np.flatnonzero(~fixed[ends])
+    edge_place, edge_start = _slots(rank[ends[moving]], blocks)
     # What fills up a slot is an edge from a particle to itself.
     own = np.arange(blocks * PACK).reshape(blocks, PACK)
     neighbours = np.repeat(own, np.diff(edge_start), axis=0).ravel()
-    neighbours[edge_place] = rank[edges[:, ::-1].T.ravel()]
+    neighbours[edge_place] = rank[others[moving]]
     return PackLayout(
-        order, rank, blocks, edge_start, (4 * neighbours).astype(np.uint32), edge_place
+        order, still, rank, blocks, edge_start, (4 * neighbours).astype(np.uint32), edge_place,
+        moving % max(len(edges), 1),
     )  # fmt: skip
 
 

@@ -165,7 +165,7 @@ class SpringNetwork:
     @cached_property
     def layout(self) -> PackLayout:
         """Where everything lies in the packed kernel."""
-        return pack_layout(self.edges, self.particle_count)
+        return pack_layout(self.edges, self.fixed)
 
 
 @dataclass(frozen=True, eq=False)
