@@ -6,6 +6,7 @@ Every message says what is wrong, where, which rule it breaks and what to do abo
 from __future__ import annotations
 
 __all__ = [
+    "Cancelled",
     "FormatError",
     "LandmarkError",
     "MeshError",
@@ -47,3 +48,7 @@ class SolverError(RisoriusError):
 
 class RisoriusWarning(UserWarning):
     """Something was repaired or left out; the result is still usable."""
+
+
+class Cancelled(RisoriusError):
+    """A person stopped long work."""

@@ -26,6 +26,7 @@ VERBS = [
     ["convert"],
     ["blend"],
     ["compress"],
+    ["studio"],
     ["landmarks"],
     ["bench"],
     ["project", "new"],

@@ -22,6 +22,7 @@ from risorius.cli import (
     project,
     render,
     rig,
+    studio,
     transfer,
     tune,
 )
@@ -78,6 +79,7 @@ app.command("play")(play.play)
 app.command("convert")(convert.convert)
 app.command("blend")(blend.blend)
 app.command("compress")(compress.compress)
+app.command("studio")(studio.studio)
 app.command("landmarks")(landmarks.landmarks)
 app.command("bench")(bench.bench)
 app.add_typer(project.app, name="project")

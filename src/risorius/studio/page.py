@@ -1,0 +1,185 @@
+"""One page: top bar, panels, viewport, hints, keys."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from inspect import isawaitable
+from typing import Any
+
+from nicegui import ui
+from nicegui.events import GenericEventArguments, KeyEventArguments, ValueChangeEventArguments
+
+from risorius.errors import FormatError, RisoriusError
+from risorius.studio.looks import ACCENT, CSS
+from risorius.studio.panels.catalogue import PANELS
+from risorius.studio.shortcuts import show_shortcuts
+from risorius.studio.topbar import TopBar
+from risorius.studio.viewport import Viewport
+from risorius.studio.workshop import Workshop
+
+__all__ = ["Page"]
+
+_EVENTS = ("select", "place", "finish", "dragging", "dropped", "handle", "choose")
+Handler = Callable[..., Awaitable[None] | None]
+
+
+class Page:
+    """The page of one browser tab.
+
+    Parameters
+    ----------
+    shop : Workshop
+    """
+
+    def __init__(self, shop: Workshop) -> None:
+        self.shop = shop
+        self.client = ui.context.client
+        self.opacity = {"skin": 1.0, "parts": 1.0, "skull": 0.0, "muscles": 0.0}
+        self.hidden: set[str] = set()
+        ui.colors(primary=ACCENT, dark="#1f2226", negative="#b9503f", positive="#5b8f68")
+        ui.add_css(CSS)
+        self.bar = TopBar(self)
+        self.bar.build()
+        self.panels = [panel(self) for panel in PANELS]
+        self.active = self.panels[0]
+        with ui.element("div").classes("st-body"):
+            self._build_panels()
+            with ui.element("div").classes("st-view"):
+                self.view = Viewport()
+                self.hint = ui.html("", sanitize=False).classes("st-hint")
+                self.busy = ui.label("building the face …").classes("st-busy")
+        for name in _EVENTS:
+            self.view.on(name, self._event_handler(name))
+        ui.keyboard(on_key=self.on_key, ignore=["input", "select", "textarea"])
+        shop.listeners.add(self.hear)
+        self.client.on_delete(lambda: shop.listeners.discard(self.hear))
+        self.say(self.active.hint)
+        self.show()
+        for what in ("document", "face", "pose", "show"):
+            self.hear(what)
+        self.active.enter()
+
+    def _build_panels(self) -> None:
+        with ui.element("div").classes("st-tabs"):
+            self.tabs = ui.tabs(on_change=self._turn).props("vertical dense")
+            with self.tabs:
+                for panel in self.panels:
+                    ui.tab(panel.name, icon=panel.icon).mark(f"tab-{panel.name.lower()}")
+        with (
+            ui.element("div").classes("st-panel"),
+            ui.tab_panels(self.tabs, value=self.active.name, animated=False).props("keep-alive"),
+        ):
+            for panel in self.panels:
+                with ui.tab_panel(panel.name), ui.column().classes("st-stack"):
+                    panel.build()
+
+    # -- what the panels use ----------------------------------------------------------------
+
+    def safely(self, handler: Handler) -> Callable[..., Awaitable[None]]:
+        """Return a handler that shows what is refused instead of failing."""
+
+        async def run(*arguments: Any) -> None:
+            try:
+                result = handler(*arguments)
+                if isawaitable(result):
+                    await result
+            except (RisoriusError, ImportError) as error:
+                self.refuse(str(error))
+
+        return run
+
+    def refuse(self, sentence: str) -> None:
+        """Show why something is not possible."""
+        with self.client:
+            ui.notify(sentence, type="negative", position="top", multi_line=True, timeout=7000)
+
+    def tell(self, sentence: str) -> None:
+        """Show what was done."""
+        with self.client:
+            ui.notify(sentence, position="bottom", timeout=2500, color="dark")
+
+    def say(self, hint: str) -> None:
+        """Show a hint at the foot of the viewport."""
+        self.hint.set_content(hint)
+        self.hint.set_visibility(bool(hint))
+
+    def show(self, **opacity: float) -> None:
+        """Set the opacity of groups and hand it to the viewport."""
+        self.opacity.update(opacity)
+        self.view.set(opacity=self.opacity, hidden=sorted(self.hidden))
+        self.bar.follow()
+
+    def turn_to(self, name: str) -> None:
+        """Bring a panel to the front."""
+        self.tabs.set_value(name)
+
+    # -- events -----------------------------------------------------------------------------
+
+    def hear(self, what: str) -> None:
+        """Follow a change of the workshop."""
+        with self.client:
+            if what == "problem":
+                self.refuse(self.shop.problem)
+            if what == "face":
+                self.busy.set_visibility(False)
+            if what == "show":
+                self.view.set(selected=self.shop.show.selected)
+            self.bar.refresh(what)
+            for panel in self.panels:
+                panel.refresh(what)
+
+    def _turn(self, event: ValueChangeEventArguments[Any]) -> None:
+        panel = next((each for each in self.panels if each.name == event.value), self.active)
+        if panel is self.active:
+            return
+        self.active.leave()
+        self.active = panel
+        self.view.set(tool="look", layout=self.bar.layout)
+        self.view.overlay()
+        self.say(panel.hint)
+        panel.enter()
+
+    def _event_handler(self, name: str) -> Callable[..., Awaitable[None]]:
+        def handle(event: GenericEventArguments) -> None:
+            if not isinstance(event.args, dict):
+                raise FormatError(f"page: {name}: expected an object")
+            self.active.take(name, event.args)
+
+        return self.safely(handle)
+
+    async def on_key(self, event: KeyEventArguments) -> None:
+        """Take a key."""
+        if not event.action.keydown:
+            return
+        key = str(event.key.name)
+        control = event.modifiers.ctrl or event.modifiers.meta
+        if control:
+            key = f"ctrl+{'shift+' if event.modifiers.shift else ''}{key.lower()}"
+        actions: dict[str, Handler] = {
+            "ctrl+z": self.undo,
+            "ctrl+shift+z": self.redo,
+            "ctrl+y": self.redo,
+            "?": show_shortcuts,
+            "f": lambda: self.view.look("front"),
+            "t": lambda: self.view.look("three_quarter"),
+            "l": lambda: self.view.look("left"),
+            "r": lambda: self.view.look("right"),
+            "2": self.bar.toggle_layout,
+        }
+        if self.active.key(key):
+            return
+        if key in actions:
+            await self.safely(actions[key])()
+
+    def undo(self) -> None:
+        """Undo one step."""
+        self.tell(f"undone: {self.shop.undo()}")
+
+    def redo(self) -> None:
+        """Do a step again."""
+        self.tell(f"done again: {self.shop.redo()}")
+
+    async def wait_for_face(self) -> None:
+        """Wait until there is a face."""
+        await asyncio.wait_for(self.shop.built.wait(), 120)

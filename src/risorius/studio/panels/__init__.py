@@ -1,0 +1,3 @@
+"""The panels beside the viewport, one file each."""
+
+__all__: list[str] = []

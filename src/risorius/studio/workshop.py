@@ -1,0 +1,282 @@
+"""The one studio of a server: document, face, pose, and what the pages see of them."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
+
+import numpy as np
+
+from risorius._check import FloatArray
+from risorius.controls.control import Control, Pose
+from risorius.errors import RisoriusError
+from risorius.studio import frames
+from risorius.studio.document import Document, Work
+from risorius.studio.heat import heat_of, paint
+from risorius.studio.hub import Hub
+from risorius.studio.scene import GROUPS, Stage, stage_of
+from risorius.studio.subject import Subject, build_subject
+
+__all__ = ["Show", "Workshop"]
+
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True, eq=False)
+class Show:
+    """What the face shows now, beside the sliders.
+
+    Parameters
+    ----------
+    heat : str
+        One of `HEATS`.
+    selected : str
+        Muscle, with or without side; empty for none.
+    played : (n, 3) float64 or None
+        Input vertices that stand in for the pose while a stream plays [mm].
+    groups : frozenset of str
+        Groups that move.
+    """
+
+    heat: str = "none"
+    selected: str = ""
+    played: FloatArray | None = None
+    groups: frozenset[str] = field(default_factory=lambda: frozenset(GROUPS))
+
+
+class Workshop:
+    """Everything that the pages of one server share.
+
+    Faces are built and posed in one worker thread, and of several wishes only the newest is
+    answered; the pages stay quick whatever the face costs.
+
+    Parameters
+    ----------
+    document : Document
+    """
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.hub = Hub()
+        self.subject: Subject | None = None
+        self.stage: Stage | None = None
+        self.pose: dict[str, float] = dict(document.work.pose)
+        self.show = Show()
+        self.draft: Work | None = None
+        self.problem = ""
+        self.built = asyncio.Event()
+        self.listeners: set[Callable[[str], None]] = set()
+        self.epoch = 0
+        self._serial = 0
+        self._wish = asyncio.Event()
+        self._worker = ThreadPoolExecutor(1, thread_name_prefix="face")
+        self._task: asyncio.Task[None] | None = None
+
+    # -- life -------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Begin to build and to pose."""
+        self._task = asyncio.create_task(self._run())
+        self._wish.set()
+
+    def stop(self) -> None:
+        """End; the document is kept already."""
+        if self._task is not None:
+            self._task.cancel()
+        self._worker.shutdown(wait=False, cancel_futures=True)
+        self.document.keeper.release()
+
+    async def work(self, function: Callable[..., Result], *arguments: Any) -> Result:
+        """Run a function in the worker thread, after what is under way there."""
+        loop = asyncio.get_running_loop()
+        return await loop.run_in_executor(self._worker, lambda: function(*arguments))
+
+    def tell(self, what: str) -> None:
+        """Tell all pages that something changed: "document", "face", "pose", "show", "problem"."""
+        for listener in tuple(self.listeners):
+            listener(what)
+
+    # -- changes ----------------------------------------------------------------------------
+
+    @property
+    def controls(self) -> tuple[Control, ...]:
+        """Controls of the face; empty until it is built."""
+        return self.subject.face.controls if self.subject else ()
+
+    def change(self, label: str, work: Work, *, gesture: str = "") -> None:
+        """Make a work the present one, keep it, and build its face."""
+        self.draft = None
+        try:
+            self.document.apply(label, work, gesture=gesture)
+        except RisoriusError as error:
+            self.complain(str(error))
+        self._refresh()
+
+    def try_out(self, work: Work) -> None:
+        """Build the face of a work that is not kept: while a handle is dragged."""
+        self.draft = work
+        self._wish.set()
+
+    def undo(self) -> str:
+        """Go one step back; return what was undone."""
+        label = self.document.undo()
+        self._refresh()
+        return label
+
+    def redo(self) -> str:
+        """Go one step ahead; return what was done."""
+        label = self.document.redo()
+        self._refresh()
+        return label
+
+    def set_pose(self, values: Mapping[str, float]) -> None:
+        """Move the face; the document follows with `keep_pose`."""
+        self.pose.update(values)
+        self.show = replace(self.show, played=None)
+        self._wish.set()
+
+    def replace_pose(self, pose: Pose, label: str) -> None:
+        """Set all sliders at once and keep them."""
+        self.pose = dict(pose)
+        self.show = replace(self.show, played=None)
+        self.keep_pose(label)
+        self._wish.set()
+
+    def keep_pose(self, label: str, *, gesture: str = "") -> None:
+        """Keep the pose as a step of the history."""
+        pose = {name: value for name, value in self.pose.items() if value}
+        if pose == dict(self.document.work.pose):
+            return
+        try:
+            self.document.apply(label, replace(self.document.work, pose=pose), gesture=gesture)
+        except RisoriusError as error:
+            self.complain(str(error))
+        self.tell("document")
+        self.tell("pose")
+
+    def present(self, **changes: Any) -> None:
+        """Change what is shown beside the sliders."""
+        self.show = replace(self.show, **changes)
+        self._wish.set()
+        if "played" not in changes:
+            self.tell("show")
+
+    def complain(self, sentence: str) -> None:
+        """Show a problem on all pages."""
+        self.problem = sentence
+        self.tell("problem")
+
+    def _refresh(self) -> None:
+        self.pose = dict(self.document.work.pose)
+        self.show = replace(self.show, played=None)
+        self._wish.set()
+        self.tell("document")
+        self.tell("pose")
+
+    # -- the loop ---------------------------------------------------------------------------
+
+    async def _run(self) -> None:
+        while True:
+            await self._wish.wait()
+            self._wish.clear()
+            work = self.draft or self.document.work
+            if self.subject is None or not _same_face(work, self.subject.work):
+                await self._build(work)
+            if self.stage is not None:
+                await self.hub.ready()
+                self._wish.clear()
+                await self._pose()
+
+    async def _build(self, work: Work) -> None:
+        try:
+            stage = await self.work(_built, work, self.subject, self.stage)
+        except RisoriusError as error:
+            self.complain(str(error))
+            if self.subject is not None:
+                # Not again until something else is wished.
+                self.subject = replace(self.subject, work=work)
+            return
+        same_head = self.subject is not None and stage.subject.head is self.subject.head
+        renewed = self.stage is None or stage.meshes != self.stage.meshes
+        self.subject, self.stage = stage.subject, stage
+        known = {control.name for control in self.controls}
+        self.pose = {name: value for name, value in self.pose.items() if name in known}
+        if renewed:
+            self.epoch += 1
+            self.hub.put(self.scene_message(only_muscles=same_head))
+        self.built.set()
+        self.tell("face")
+
+    async def _pose(self) -> None:
+        assert self.stage is not None
+        self._serial += 1
+        pose = {name: value for name, value in self.pose.items() if value}
+        try:
+            message = await self.work(_frame, self.stage, pose, self.show, self.epoch, self._serial)
+        except RisoriusError as error:
+            self.complain(str(error))
+            return
+        self.hub.offer(message)
+
+    def scene_message(self, *, only_muscles: bool = False) -> bytes:
+        """Return the message with all meshes, or with the muscles alone."""
+        assert self.stage is not None
+        meshes = [each for each in self.stage.meshes if each.group == "muscles" or not only_muscles]
+        replaced = ("muscles",) if only_muscles else GROUPS
+        facts = {} if only_muscles else _facts(self.stage)
+        return frames.scene(meshes, epoch=self.epoch, replaced=replaced, facts=facts)
+
+    def greet(self, put: Callable[[bytes], None]) -> None:
+        """Send a page that has just come all that it needs."""
+        if self.stage is not None:
+            put(self.scene_message())
+            self._wish.set()
+
+
+def _same_face(work: Work, other: Work) -> bool:
+    names = ("muscle_map", "vectors", "landmarks")
+    same = all(getattr(work, name) is getattr(other, name) for name in names)
+    bare = {"poses": {}, "inline": {}, "shapes": ("singles",)}
+    return same and replace(work.project, **bare) == replace(other.project, **bare)
+
+
+def _built(work: Work, subject: Subject | None, stage: Stage | None) -> Stage:
+    return stage_of(build_subject(work, subject), stage)
+
+
+def _facts(stage: Stage) -> dict[str, Any]:
+    head = stage.subject.head
+    marks = head.landmarks
+    low, high = (marks.position(name) if name in marks else None for name in ("2.1", "11.1"))
+    if low is None or high is None:
+        points = head.skin.mesh.positions
+        low, high = points.min(axis=0), points.max(axis=0)
+    centre = 0.5 * (low + high)
+    eyes = [name for name in ("3.7", "3.11", "3.8", "3.12") if name in marks]
+    mouth = [name for name in ("8.3", "8.4") if name in marks]
+    spots = {"eyes": eyes, "mouth": mouth}
+    return {
+        "centre": [0.0, float(centre[1]), float(centre[2]) - 0.2 * head.height],
+        "height": float(np.linalg.norm(high - low)),
+        "spots": {
+            name: marks.positions(found).mean(axis=0).tolist()
+            for name, found in spots.items()
+            if found
+        },
+    }
+
+
+def _frame(stage: Stage, pose: Pose, show: Show, epoch: int, serial: int) -> bytes:
+    subject = stage.subject
+    positions = subject.face.pose(pose) if show.played is None else show.played
+    posed = stage.posed(pose if show.played is None else {}, positions, set(show.groups | {"skin"}))
+    heat = None
+    if show.heat != "none":
+        names = (show.selected,) if show.selected else ()
+        heat = heat_of(show.heat, subject, posed["skin"], muscles=names)
+    rest = {each.name: each.mesh.positions for each in stage.meshes}
+    colours = {} if heat is None else {"skin": paint(heat[0], heat[1])}
+    return frames.frame(rest, posed, epoch=epoch, serial=serial, paint=colours)
