@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
 from risorius.playback.bounded_fit import fit_bounded
+from risorius.playback.kernels.bounded import finish
 
 
 @given(seed=st.integers(0, 10_000), count=st.integers(1, 30))
@@ -36,14 +37,16 @@ def test_it_agrees_with_bounded_least_squares_of_scipy() -> None:
     np.testing.assert_allclose(x, other, atol=1e-6)
 
 
-def test_a_start_changes_nothing_but_the_way() -> None:
-    rng = np.random.default_rng(4)
-    rows, wanted = rng.normal(size=(30, 12)), rng.normal(size=30)
-    gram, linear = rows.T @ rows, rows.T @ wanted
-    low, high = np.zeros(12), np.full(12, 0.2)
-    first = fit_bounded(gram, linear, low=low, high=high)
-    other = fit_bounded(gram, linear, low=low, high=high, start=np.full(12, 5.0))
-    np.testing.assert_allclose(first, other, atol=1e-9)
+@pytest.mark.parametrize("start", [0.0, 0.05, 0.1])
+def test_the_active_set_alone_finds_the_minimum_from_anywhere(start: float) -> None:
+    rng = np.random.default_rng(8)
+    for _ in range(20):
+        rows, wanted = rng.normal(size=(30, 20)), rng.normal(size=30)
+        low, high = np.zeros(20), np.full(20, 0.1)
+        x = np.full(20, start)
+        systems = finish(rows.T @ rows, rows.T @ wanted, low, high, 1e-9, x)
+        assert systems < 80
+        np.testing.assert_allclose(x, lsq_linear(rows, wanted, (0.0, 0.1), tol=1e-12).x, atol=1e-6)
 
 
 def test_variables_without_curvature_or_room_rest() -> None:

@@ -16,12 +16,7 @@ _SLOPE = 1e-9
 
 
 def fit_bounded(
-    gram: FloatArray,
-    linear: FloatArray,
-    *,
-    low: FloatArray,
-    high: FloatArray,
-    start: FloatArray | None = None,
+    gram: FloatArray, linear: FloatArray, *, low: FloatArray, high: FloatArray
 ) -> FloatArray:
     """Return the x (k,) with low <= x <= high that minimises x' G x / 2 - h' x.
 
@@ -33,15 +28,13 @@ def fit_bounded(
         h.
     low, high : (k,) float64
         Bounds.
-    start : (k,) float64, optional
-        Where to begin, zero if left out.
 
     Notes
     -----
-    The start is never the answer of another frame, so that a frame does not depend on those before
-    it.
+    Always starts from the bound nearest to zero, so that a frame's answer does not depend on the
+    frames before it.
     """
-    x = np.clip(np.zeros(len(linear)) if start is None else start, low, high)
+    x = np.clip(np.zeros(len(linear)), low, high)
     descend(gram, linear, low, high, _NEAR, _SWEEPS, x)
     finish(gram, linear, low, high, _SLOPE, x)
     return x

@@ -27,8 +27,7 @@ __all__ = ["FapFit"]
 _ENOUGH = 20  # targets of one set that can stand for a whole face
 _PREFERENCE = ("singles", "fap", "arkit", "facs")
 _ABSENT = 3e-3  # weight of parameters that a frame says nothing of
-_EFFORT = 4e-3  # cost of a full weight [mm^2]
-_EASINGS = (1.0, 0.01)  # of the effort, from one round to the next
+_EFFORT = 4e-5  # cost of a full weight [mm^2]; so small that what can be made is made
 _EYE_RADIUS = 12.0  # length at which a turn counts [mm]
 _MOST_MASKS = 64
 
@@ -100,17 +99,7 @@ class FapFit:
         gram, scaled = self._system(present)
         wanted = np.array([values[fap_name(numbers[row])] for row in present])
         linear = scaled.T @ (wanted * self._scale[list(present)])
-        # The first round says which muscles do it, with the least effort. Those after it count the
-        # effort of what is changed only, so that it no longer holds back the parameters.
-        found = np.zeros(len(self.basis))
-        own = np.eye(len(self.basis))
-        for easing in _EASINGS:
-            effort = easing * _EFFORT
-            found = fit_bounded(
-                gram + effort * own, linear + effort * found, low=self.low, high=self.high,
-                start=found,
-            )  # fmt: skip
-        result[self.basis] = found
+        result[self.basis] = fit_bounded(gram, linear, low=self.low, high=self.high)
         return result
 
     @property
@@ -119,14 +108,14 @@ class FapFit:
         return self.reading.unit * np.where(turns, _EYE_RADIUS, 1.0)
 
     def _system(self, present: tuple[int, ...]) -> tuple[FloatArray, FloatArray]:
-        """Return matrix (b, b) without effort and scaled rows (p, b) of a frame's parameters."""
+        """Return normal matrix (b, b) and scaled rows (p, b) of the parameters in a frame."""
         if present not in self._systems:
             if len(self._systems) >= _MOST_MASKS:
                 self._systems.clear()
             rows = self.matrix[:, self.basis] * self._scale[:, None]
             share = np.full(len(rows), _ABSENT)
             share[list(present)] = 1.0
-            gram = (rows * share[:, None]).T @ rows
+            gram = (rows * share[:, None]).T @ rows + _EFFORT * np.eye(len(self.basis))
             self._systems[present] = (gram, rows[list(present)])
         return self._systems[present]
 
