@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,6 +11,7 @@ import numpy as np
 from risorius._check import FloatArray
 from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.skin import mirror_partners
+from risorius.errors import RisoriusWarning
 from risorius.springmuscle.bones import Bones, SkinBones
 from risorius.springmuscle.fibres import make_fibres
 from risorius.springmuscle.fit_parameters import FitParameters
@@ -24,6 +26,8 @@ from risorius.springmuscle.surface import SkinSurface
 
 __all__ = ["Ground", "fit_muscle", "fit_muscles"]
 
+# A muscle that lies beside the skin with more of its points than this is told of.
+_BESIDE = 0.2
 _MIRROR = np.array([-1.0, 1.0, 1.0])
 # Axes of a mirrored ellipsoid: the one along the skin turns round, so that frames stay right.
 _TURNED = np.array([1.0, -1.0, 1.0])
@@ -83,11 +87,12 @@ def fit_muscles(recipe: OutlineRecipe, ground: Ground) -> MuscleSet:
     LandmarkError, ParameterError
         If an outline cannot be laid on this head; the message names the muscle.
     """
-    outlines = recipe.sided()
+    outlines = {outline.name: outline for outline in recipe.sided()}
     fitted: dict[str, FittedMuscle] = {}
-    for outline in outlines:
+    for outline in outlines.values():
         twin = outline.name[:-2] + "_l"
-        if ground.symmetric and outline.name.endswith("_r") and twin in fitted:
+        right = ground.symmetric and outline.name.endswith("_r") and twin in fitted
+        if right and outline.mirrors(outlines[twin]):
             fitted[outline.name] = mirrored(fitted[twin], outline)
         else:
             fitted[outline.name] = fit_muscle(outline, ground)
@@ -107,6 +112,14 @@ def fit_muscle(outline: MuscleOutline, ground: Ground) -> FittedMuscle:
     """
     surface, parameters = ground.surface, ground.parameters
     layout = lay_out(outline, surface)
+    beside = 1.0 - float(layout.found.mean())
+    if beside > _BESIDE:
+        warnings.warn(
+            f"outline {outline.name}: {beside:.0%} of its points lie beside the skin and keep the "
+            "place they were drawn at; move them, or leave the muscle out",
+            RisoriusWarning,
+            stacklevel=2,
+        )
     patch = find_patch(layout, surface, parameters)
     layer = Layer(outline, surface, parameters)
     mirror = ground.symmetric and not outline.name.endswith(("_l", "_r"))

@@ -202,6 +202,10 @@ class MuscleOutline:
         named = replace(self, name=self.name + ending, control=control, mirror=False)
         return named if side > 0 else named._flipped()
 
+    def mirrors(self, other: MuscleOutline) -> bool:
+        """Return whether this muscle is drawn as the mirror image of `other`."""
+        return replace(self._flipped(), name=other.name, control=other.control) == other
+
     def _flipped(self) -> MuscleOutline:
         rows = tuple(tuple(point.mirrored() for point in row) for row in self.rows)
         ring = self.ring

@@ -22,6 +22,7 @@ from risorius.mesh.core import TriMesh
 from risorius.mesh.laplacian import averaging
 from risorius.mesh.lips import LipSides
 from risorius.mesh.normals import vertex_normals
+from risorius.spatial.closest import closest_points
 from risorius.spatial.raycast import Scene
 from risorius.springmuscle.measure import FaceMeasure
 
@@ -40,6 +41,8 @@ _LOW, _HIGH, _BEHIND = 8.0, 15.0, 0.75
 _NECK, _STEEP = 0.35, 2.0
 # Outlines are looked for from this far outside [mm at the reference width].
 _START, _REACH = 50.0, 120.0
+# A point beside the skin may be moved so far [mm at the reference width].
+_NEAREST = 12.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,13 +160,22 @@ class SkinSurface:
     def project(self, points: FloatArray) -> tuple[FloatArray, BoolArray]:
         """Lay `points` (q, 3) of an outline on the skin, from outside; tell which (q,) found it.
 
-        They come in along `outwards`; what finds no skin keeps its place.
+        They come in along `outwards`, else they take the nearest skin if there is some near; what
+        finds none keeps its place.
         """
         ahead, reach = self.outwards(points), _START * self.scale
         start = points + reach * ahead
         hits = self.scene.cast(start, -ahead, max_distance=_REACH * self.scale)
         found = np.where(hits.hit[:, None], np.nan_to_num(hits.positions), points)
-        return found, hits.hit
+        missed = np.flatnonzero(~hits.hit)
+        if not len(missed):
+            return found, hits.hit
+        nearest = closest_points(self.scene, points[missed])
+        near = nearest.distance < _NEAREST * self.scale
+        found[missed[near]] = nearest.positions[near]
+        met = hits.hit.copy()
+        met[missed[near]] = True
+        return found, met
 
 
 def _completed(measure: FaceMeasure, head: Head) -> FaceMeasure:
