@@ -29,7 +29,7 @@ def main(arguments: list[str]) -> Rig:
     shapes = list_shapes(face.controls, default_presets(), sets=("emotions", "arkit"))
     for name, reason in shapes.left_out.items():
         print(f"left out: {name}: {reason}")
-    rig = bake(face, shapes.poses, left_out=shapes.left_out)
+    rig = bake(face, shapes.poses, left_out=shapes.left_out, upon=shapes.upon)
     rig.save(out)
     print(f"wrote {out} with {len(rig.targets)} shapes")
     return rig

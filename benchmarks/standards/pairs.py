@@ -20,9 +20,9 @@ def pair_tables(methods: tuple[str, ...], data: Path) -> str:
     pages: list[str] = []
     for head, method, face in faces(methods, data):
         print(f"{head}, {method} ...", file=sys.stderr, flush=True)
-        poses = list_shapes(face.controls, default_presets(), sets=("arkit",)).poses
+        shapes = list_shapes(face.controls, default_presets(), sets=("arkit",))
         begun = time.process_time()
-        found = find_pairs(face, poses, budget=_BUDGET)
+        found = find_pairs(face, shapes.poses, budget=_BUDGET, upon=shapes.upon)
         seconds = time.process_time() - begun
         rows = [
             f"| {pair.first}, {pair.second} | {pair.before:.2f} | {pair.after:.2f} | "

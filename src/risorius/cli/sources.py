@@ -205,12 +205,14 @@ def bake_head(
     if only is not None:
         shapes = _chosen(shapes, only)
     with talk.stage("bake") as tick:
-        rig = bake(face, shapes.poses, left_out=shapes.left_out, progress=tick)
+        rig = bake(face, shapes.poses, left_out=shapes.left_out, upon=shapes.upon, progress=tick)
     pairs: tuple[CorrectivePair, ...] = ()
     if correctives:
         with talk.stage("correctives") as tick:
             wanted = {n: p for n, p in shapes.poses.items() if set_of(n) == "arkit"}
-            pairs = find_pairs(face, wanted or shapes.poses, budget=correctives, progress=tick)
+            pairs = find_pairs(
+                face, wanted or shapes.poses, budget=correctives, upon=shapes.upon, progress=tick
+            )
             rig = with_pairs(rig, pairs)
     return Baked(rig, dict(shapes.left_out), pairs)
 
@@ -237,4 +239,4 @@ def require_shapes(
 
 def _chosen(shapes: ShapeList, names: Sequence[str]) -> ShapeList:
     require_shapes(names, shapes.poses, shapes.left_out)
-    return ShapeList({name: shapes.poses[name] for name in names}, {})
+    return replace(shapes, poses={name: shapes.poses[name] for name in names}, left_out={})

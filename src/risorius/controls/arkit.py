@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from types import MappingProxyType
 
-__all__ = ["ArkitShape", "arkit_shapes"]
+__all__ = ["MADE_UPON", "ArkitShape", "arkit_shapes"]
+
+MADE_UPON: Mapping[str, str] = MappingProxyType({"mouthClose": "jawOpen"})
+"""Shapes that only mean something on top of another: closed lips on an open jaw.
+
+Their target is what they change there, so that both weights together give the simulated pose.
+"""
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from risorius.controls.arkit import arkit_shapes
+from risorius.controls.arkit import MADE_UPON, arkit_shapes
 from risorius.controls.control import Control, Pose
 from risorius.controls.presets import PresetBook
 from risorius.controls.standard_sets import STANDARD_SETS
@@ -26,6 +26,9 @@ ALL_SHAPE_SETS = (*SHAPE_SETS, *STANDARD_SETS, *SOLVED_SETS)
 set of the thesis: 64 of them in their positive direction, the 14 visemes and the six expressions.
 """
 
+_CONTROLS_UPON = {"lips_together": "jaw_pitch"}
+"""Controls that mean something at the upper end of another only, as `MADE_UPON` says of shapes."""
+
 _NO_POSE = "no pose in the presets makes it"
 
 
@@ -33,11 +36,13 @@ _NO_POSE = "no pose in the presets makes it"
 class ShapeList:
     """Shapes to bake.
 
-    `poses` by target name; `left_out` says why a wanted shape cannot be made.
+    `poses` by target name; `left_out` says why a wanted shape cannot be made; `upon` is the pose on
+    top of which a shape is made, for the few that mean nothing alone (`MADE_UPON`).
     """
 
     poses: dict[str, Pose]
     left_out: dict[str, str]
+    upon: dict[str, Pose] = field(default_factory=dict[str, Pose])
 
 
 def list_shapes(
@@ -74,7 +79,16 @@ def list_shapes(
             poses[name] = fitted.pose
             if fitted.missing:
                 left_out[f"{name} (in part)"] = f"made without {', '.join(fitted.missing)}"
-    return ShapeList(poses, left_out)
+    upon = {
+        name: presets.fit(presets.arkit[base], controls).pose
+        for name, base in MADE_UPON.items()
+        if name in poses and base in presets.arkit
+    }
+    ranges = {control.name: control for control in controls}
+    for name, base in _CONTROLS_UPON.items():
+        if name in poses and base in ranges:
+            upon[name] = {base: ranges[base].high}
+    return ShapeList(poses, left_out, upon)
 
 
 def _add_standard(

@@ -45,7 +45,7 @@ class _Session(Protocol):
 def rig_of_singles(face: Face, presets: PresetBook, *, progress: Progress | None = None) -> Rig:
     """Return the rig of a face's single controls, which tells a stream apart into them."""
     shapes = list_shapes(face.controls, presets, sets=("singles",))
-    return bake(face, shapes.poses, progress=progress)
+    return bake(face, shapes.poses, upon=shapes.upon, progress=progress)
 
 
 class LivePlayer(Player):

@@ -17,6 +17,7 @@ from risorius._check import FloatArray, as_number
 from risorius.controls.control import Pose
 from risorius.controls.pair_names import pair_name
 from risorius.controls.presets import mirrored
+from risorius.rig.bake import displacement
 from risorius.rig.face import Face
 from risorius.rig.rig import MorphTarget, Rig
 
@@ -66,6 +67,7 @@ def find_pairs(
     poses: Mapping[str, Pose],
     *,
     budget: int = 20,
+    upon: Mapping[str, Pose] | None = None,
     progress: Progress | None = None,
 ) -> tuple[CorrectivePair, ...]:
     """Return the pairs whose sum is farthest from the simulation, the worst first.
@@ -77,6 +79,8 @@ def find_pairs(
         Shapes by name, such as those of ARKit.
     budget : int
         How many pairs, 1..1000. A pair and its mirror image are taken both or not at all.
+    upon : mapping of str to Pose, optional
+        As for `risorius.rig.bake`.
     progress : callable, optional
         Called with (done, all, name).
 
@@ -89,7 +93,8 @@ def find_pairs(
     six more for those that are kept.
     """
     budget = int(as_number("budget", budget, low=1, high=1000))
-    alone = {name: face.displace(pose) for name, pose in poses.items()}
+    base = upon or {}
+    alone = {name: displacement(face, pose, upon=base.get(name)) for name, pose in poses.items()}
     candidates = _candidates(face, poses, alone)
     ranked: list[tuple[float, tuple[tuple[str, str], ...]]] = []
     for done, (common, same) in enumerate(candidates):
@@ -106,7 +111,7 @@ def find_pairs(
     for distance, same in ranked:
         if distance > _STILL and len(kept) + len(same) <= budget:
             kept.extend(same)
-    measure = _Measure(face, poses, alone)
+    measure = _Measure(face, poses, alone, base)
     found = [measure.of(*names) for names in kept]
     found.sort(key=lambda pair: (-_whole(pair.deltas), pair.first, pair.second))
     return tuple(found)
@@ -185,11 +190,16 @@ class _Measure:
     """Tries mixes of two shapes; what each makes by itself is tried once."""
 
     def __init__(
-        self, face: Face, poses: Mapping[str, Pose], alone: Mapping[str, FloatArray]
+        self,
+        face: Face,
+        poses: Mapping[str, Pose],
+        alone: Mapping[str, FloatArray],
+        upon: Mapping[str, Pose],
     ) -> None:
         self._face = face
         self._poses = poses
         self._alone = alone
+        self._upon = upon
         self._halves: dict[str, FloatArray] = {}
 
     def of(self, first: str, second: str) -> CorrectivePair:
@@ -216,7 +226,10 @@ class _Measure:
             return self._alone[name]
         if name not in self._halves:
             half = {control: share * value for control, value in self._poses[name].items()}
-            self._halves[name] = self._face.displace(half)
+            upon = self._upon.get(name)
+            if upon is not None:
+                upon = {control: share * value for control, value in upon.items()}
+            self._halves[name] = displacement(self._face, half, upon=upon)
         return self._halves[name]
 
 

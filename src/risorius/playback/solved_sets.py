@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from risorius.controls.shape_sets import SOLVED_SETS, ShapeList
 from risorius.errors import LandmarkError
@@ -34,7 +35,7 @@ def with_solved_sets(
     try:
         solved = solve_fap_shapes(face, progress=progress)
     except LandmarkError as error:
-        return ShapeList(shapes.poses, {**shapes.left_out, "fap_*": str(error)})
+        return replace(shapes, left_out={**shapes.left_out, "fap_*": str(error)})
     thesis = "fap" not in sets
     wanted = solved.poses(thesis=thesis)
     left_out = {
@@ -42,4 +43,5 @@ def with_solved_sets(
         for name, reason in solved.left_out.items()
         if not (thesis and name.removesuffix(" (in part)").endswith("_neg"))
     }
-    return ShapeList({**shapes.poses, **wanted}, {**shapes.left_out, **left_out})
+    poses = {**shapes.poses, **wanted}
+    return replace(shapes, poses=poses, left_out={**shapes.left_out, **left_out})

@@ -6,13 +6,14 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from risorius._check import FloatArray
 from risorius.controls.control import Pose
 from risorius.head.head import Head
 from risorius.landmarks.landmark_set import Landmark, LandmarkSpec
 from risorius.rig.face import Face
 from risorius.rig.rig import MorphTarget, Rig
 
-__all__ = ["bake", "empty_rig"]
+__all__ = ["bake", "displacement", "empty_rig"]
 
 # Motion below this is noise of the arithmetic and is left out of the targets [mm].
 _STILL = 1e-4
@@ -25,6 +26,7 @@ def bake(
     poses: Mapping[str, Pose],
     *,
     left_out: Mapping[str, str] | None = None,
+    upon: Mapping[str, Pose] | None = None,
     progress: Progress | None = None,
 ) -> Rig:
     """Evaluate `face` in every pose and collect the displacements.
@@ -36,6 +38,8 @@ def bake(
         Target name -> pose, in the order of the rig's targets.
     left_out : mapping of str to str, optional
         Shapes that were asked for and cannot be made, with the reason; written into the rig.
+    upon : mapping of str to Pose, optional
+        Target name -> pose on top of which it is made; see `displacement`.
     progress : callable, optional
         Called with (done, all, name) before each pose.
 
@@ -49,12 +53,29 @@ def bake(
     for number, (name, pose) in enumerate(poses.items()):
         if progress is not None:
             progress(number, len(poses), name)
-        moved = face.displace(pose)
+        moved = displacement(face, pose, upon=(upon or {}).get(name))
         moved[(moved * moved).sum(axis=1) <= _STILL * _STILL] = 0.0
         targets.append(MorphTarget.from_dense(name, head.frame.vectors_to_input(moved), pose=pose))
     return empty_rig(head).with_targets(
         targets, controls=face.controls, left_out=dict(left_out or {})
     )
+
+
+def displacement(face: Face, pose: Pose, *, upon: Pose | None = None) -> FloatArray:
+    """Return what a shape adds to a face (n, 3) [mm, canonical frame].
+
+    Parameters
+    ----------
+    face : Face
+    pose : Pose
+    upon : Pose, optional
+        Pose that the shape is made for: the answer is what it changes there. Lips that close on an
+        open jaw would be pushed apart again by contact on a closed one.
+    """
+    if upon is None:
+        return face.displace(pose)
+    both = {name: upon.get(name, 0.0) + pose.get(name, 0.0) for name in {**upon, **pose}}
+    return face.displace(both) - face.displace(upon)
 
 
 def empty_rig(head: Head) -> Rig:
