@@ -23,6 +23,7 @@ CURRENT = "current"
 """Name under which a project keeps the pose that its sliders show."""
 
 _LONGEST_HISTORY = 500
+_HANDED_ON = ("presets", "recipe")
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +73,7 @@ def work_of(project: Project) -> Work:
     """
     _, carried = read_mesh(project)
     return Work(
-        project=replace(project, inline={}),
+        project=replace(project, inline=_untouched(project)),
         muscle_map=muscle_map_of(project),
         vectors=vectors_of(project),
         landmarks=dict(landmarks_of(project, carried)),
@@ -94,8 +95,9 @@ def project_of(
         Recipes as they ship or stand in files that the project names; see `originals_of`.
     """
     inline: dict[str, Mapping[str, Any]] = {}
-    if "presets" in before.inline:
-        inline["presets"] = before.inline["presets"]
+    for name in _HANDED_ON:
+        if name in before.inline:
+            inline[name] = before.inline[name]
     content = {
         "muscle_map": work.muscle_map.to_json(),
         "vector_set": work.vectors.to_json(),
@@ -247,6 +249,11 @@ class Document:
             If it cannot be written.
         """
         self.keeper.write(project_of(self.work, self._opened, self._originals))
+
+
+def _untouched(project: Project) -> dict[str, Mapping[str, Any]]:
+    """Return the recipes in a project that the studio hands on as they are."""
+    return {name: project.inline[name] for name in _HANDED_ON if name in project.inline}
 
 
 def _quiet(reader: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:

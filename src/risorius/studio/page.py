@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from functools import wraps
 from inspect import isawaitable
 from typing import Any
 
@@ -79,6 +80,7 @@ class Page:
     def safely(self, handler: Handler) -> Callable[..., Awaitable[None]]:
         """Return a handler that shows what is refused instead of failing."""
 
+        @wraps(handler)  # whether it wants the event is told by its signature
         async def run(*arguments: Any) -> None:
             try:
                 result = handler(*arguments)
@@ -97,7 +99,7 @@ class Page:
     def tell(self, sentence: str) -> None:
         """Show what was done."""
         with self.client:
-            ui.notify(sentence, position="bottom", timeout=2500, color="dark")
+            ui.notify(sentence, position="bottom-right", timeout=2500, color="dark")
 
     def say(self, hint: str) -> None:
         """Show a hint at the foot of the viewport."""

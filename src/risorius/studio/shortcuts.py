@@ -26,7 +26,7 @@ SHORTCUTS = {
     "Everywhere": (
         ("Ctrl Z, Ctrl Shift Z", "undo, do again"),
         ("Space", "play, pause (Play)"),
-        ("1 - 9, Enter", "choose a face, next faces (Tune)"),
+        ("1 - 9", "choose a face (Tune)"),
         ("?", "this page"),
     ),
 }

@@ -144,6 +144,7 @@ def _vector_face(work: Work, before: Subject | None) -> Face | None:
 
 def _with_recipes(work: Work) -> Project:
     recipes = {
+        **work.project.inline,
         "muscle_map": work.muscle_map.to_json(),
         "vector_set": work.vectors.to_json(),
     }

@@ -99,7 +99,7 @@ class TopBar:
             return
         document = self.page.shop.document
         self._file.set_text(document.keeper.path.name)
-        self._file.tooltip(str(document.keeper.path))
+        self._file.props["title"] = str(document.keeper.path)
         count = document.history[1]
         self._kept.set_text("kept" if count else "not changed yet")
         self._undo.set_enabled(bool(document.undo_label))

@@ -92,7 +92,7 @@ class FacePanel(Panel):
     def _slider_row(self, row: Row) -> None:
         joined = self._together or len(row.controls) == 1
         with ui.element("div").classes("st-row" if joined else "st-row two"):
-            ui.label(title_of(row.name)).classes("st-name").tooltip(title_of(row.name))
+            ui.label(title_of(row.name)).classes("st-name").props(f'title="{title_of(row.name)}"')
             for controls in [row.controls] if joined else [[each] for each in row.controls]:
                 first = controls[0]
                 slider = ui.slider(

@@ -1,0 +1,110 @@
+"""The list of muscles by layer: choose, hide, solo, lock, delete."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from nicegui import ui
+
+from risorius.studio.regions import title_of
+
+if TYPE_CHECKING:
+    from risorius.studio.panels.muscles import MusclePanel
+
+__all__ = ["MuscleList"]
+
+
+class MuscleList:
+    """Muscles of the face, deep before superficial.
+
+    Parameters
+    ----------
+    panel : MusclePanel
+    """
+
+    def __init__(self, panel: MusclePanel) -> None:
+        self.panel = panel
+        self._shown: object = None
+
+    def build(self) -> None:
+        """Make the elements."""
+        self._frame = ui.column().classes("st-group").style("gap:2px").mark("muscle-list")
+
+    def fill(self) -> None:
+        """Show the muscles there are, if they have changed."""
+        work, page = self.panel.shop.document.work, self.panel.page
+        vector = work.project.method == "vector"
+        entries: list[tuple[str, str, tuple[str, ...]]] = []
+        if vector:
+            names = [muscle.name for muscle in work.vectors.muscles]
+            for name in names:
+                if not name.endswith("_r"):
+                    stem = name.removesuffix("_l")
+                    pair = tuple(n for n in (name, f"{stem}_r") if n in names)
+                    entries.append(("vector muscles", stem, pair))
+        elif work.project.method == "layered":
+            for muscle in work.muscle_map.muscles:
+                bodies = (f"{muscle.name}_l", f"{muscle.name}_r") if muscle.mirror else None
+                entries.append((f"layer {muscle.layer}", muscle.name, bodies or (muscle.name,)))
+        state = (
+            tuple(entries), self.panel.shop.show.selected, frozenset(page.hidden),
+            frozenset(self.panel.locked),
+        )  # fmt: skip
+        if state == self._shown:
+            return
+        self._shown = state
+        self._frame.clear()
+        with self._frame:
+            title = ""
+            for layer, name, bodies in entries:
+                if layer != title:
+                    title = layer
+                    ui.label(layer).classes("st-head")
+                self._row(name, bodies)
+            if not entries:
+                ui.label("Spring muscles are moved here and edited in their recipe file.").classes(
+                    "st-help"
+                )
+
+    def _row(self, name: str, bodies: tuple[str, ...]) -> None:
+        panel, page = self.panel, self.panel.page
+        hidden = bodies[0] in page.hidden
+        chosen = panel.shop.show.selected in (*bodies, name)
+        classes = f"st-item {'on' if chosen else ''} {'off' if hidden else ''}"
+        with ui.element("div").classes(classes).mark(f"muscle-{name}") as row:
+            row.on("click", page.safely(lambda _: panel.select(bodies[0])))
+            ui.label(title_of(name)).classes("st-name")
+            locked = name in panel.locked
+            for icon, tip, act in (
+                ("visibility_off" if hidden else "visibility", "Hide or show", self._hide),
+                ("filter_center_focus", "Only this one", self._solo),
+                ("lock" if locked else "lock_open", "Lock", self._lock),
+            ):
+                button = ui.button(icon=icon).props(
+                    f'flat round dense size=xs color=grey-6 title="{tip}"'
+                )
+                button.on("click.stop", page.safely(lambda _, a=act: a(name, bodies)))
+
+    def _hide(self, _: str, bodies: tuple[str, ...]) -> None:
+        hidden = self.panel.page.hidden
+        if bodies[0] in hidden:
+            hidden.difference_update(bodies)
+        else:
+            hidden.update(bodies)
+        self._apply()
+
+    def _solo(self, _: str, bodies: tuple[str, ...]) -> None:
+        stage = self.panel.shop.stage
+        names = {each.name for each in stage.meshes if each.group == "muscles"} if stage else set()
+        others = names - set(bodies)
+        page = self.panel.page
+        page.hidden = set() if page.hidden == others else others
+        self._apply()
+
+    def _lock(self, name: str, _: tuple[str, ...]) -> None:
+        self.panel.locked ^= {name}
+        self.fill()
+
+    def _apply(self) -> None:
+        self.panel.page.show()
+        self.fill()
