@@ -124,7 +124,7 @@ class FaithfulFace:
             reach=p.influence_reach * head.height, jaw_reach=p.jaw_reach * head.height,
         )  # fmt: skip
         places = anchors.places(anatomy.positions, anatomy.faces)
-        skin = build_skin_model(moving, anchors, places, influence, p)
+        skin = build_skin_model(moving, anchors, places, influence, p, scale=fitted.scale)
         names = tuple(dict.fromkeys(laid.control for laid in anatomy.muscles if laid.control))
         return FaithfulFace(
             head, moving, MovingMuscles(anatomy, p), anchors, influence, skin,

@@ -197,7 +197,7 @@ def _landmark_pairs(
     thickness = scale * _thickness_of_faces(anatomy)
     covered = on_skin.hit & beneath.hit & (places[:, 2] > mechanics.jaw.hinge[2])
     covered[covered] &= thickness[beneath.face[covered]] > 0.0
-    depth = (beneath.distance - on_skin.distance)[covered]
+    depth = beneath.distance[covered] - on_skin.distance[covered]
     thick = thickness[beneath.face[covered]]
     wanted = np.clip(depth, _LEAST * thick, _MOST * thick)
     lift = np.clip(depth - wanted, -_LONGEST * scale, _LONGEST * scale)

@@ -85,6 +85,10 @@ class FaithfulParameters:
         Least cosine between the skin's normal and that of what it hangs on (finding S10).
     lining_gap : float
         The lining of the mouth hangs on bone from this distance to the lip lines on [mm].
+    corner_hold, corner_reach : float
+        Share of the stiffness of anchors that is left at the mouth corners, and how far from them
+        it is whole again [mm]. Skin there is torn between what goes with the skull and what goes
+        with the jaw, and tears at full stiffness.
     lid_pinned : float
         Lid vertices that follow their margin by more than this share are moved by it alone.
     lid_hold : float
@@ -120,6 +124,8 @@ class FaithfulParameters:
     anchor_reach: float = 45.0
     facing: float = 0.1
     lining_gap: float = 8.0
+    corner_hold: float = 0.02
+    corner_reach: float = 18.0
     lid_pinned: float = 0.5
     lid_hold: float = 0.2
     influence_reach: float = 0.25
@@ -131,9 +137,9 @@ class FaithfulParameters:
 
     def __post_init__(self) -> None:
         for name in ("anchor", "bone_anchor", "largest_contraction", "largest_ring_contraction",
-                     "lid_pinned", "lid_hold", "shortening_limit"):  # fmt: skip
+                     "lid_pinned", "lid_hold", "shortening_limit", "corner_hold"):  # fmt: skip
             as_number(name, getattr(self, name), low=0.0, high=1.0)
         for name in ("ramp_steps", "ramp_sweeps", "contact_rounds"):
             as_number(name, getattr(self, name), low=1)
-        for name in ("anchor_reach", "influence_reach", "jaw_reach"):
+        for name in ("anchor_reach", "corner_reach", "influence_reach", "jaw_reach"):
             as_number(name, getattr(self, name), low=1e-6)

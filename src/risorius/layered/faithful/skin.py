@@ -11,6 +11,7 @@ import numpy as np
 from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.eyelids import Eyelids
 from risorius.anatomy.mechanics import Mechanics
+from risorius.anatomy.smooth_step import smooth_step
 from risorius.errors import MeshError, RisoriusWarning
 from risorius.layered.faithful.binding import Anchors
 from risorius.layered.faithful.parameters import FaithfulParameters
@@ -65,6 +66,8 @@ def build_skin_model(
     places: FloatArray,
     influence: FloatArray,
     parameters: FaithfulParameters,
+    *,
+    scale: float,
 ) -> SkinModel:
     """Return the model of a head's skin (spec 2.10): stretch, bending, area, volume, anchors.
 
@@ -78,6 +81,8 @@ def build_skin_model(
     influence : (n,) float64
         Vertices without influence do not move.
     parameters : FaithfulParameters
+    scale : float
+        Size of the head over that of the built-in one.
     """
     p, mesh = parameters, mechanics.head.skin.mesh
     n = mesh.vertex_count
@@ -93,7 +98,8 @@ def build_skin_model(
         inv_mass[held[stiffness > p.lid_pinned]] = 0.0
         hung = np.stack([anchors.vertices, n + np.arange(len(places))], axis=1).astype(np.int32)
         bony = anchors.on("cranium", "mandible")
-        anchored = Distances(hung, anchors.lengths, np.where(bony, p.bone_anchor, p.anchor))
+        hold = np.where(bony, p.bone_anchor, p.anchor) * _corner_share(mechanics, anchors, scale, p)
+        anchored = Distances(hung, anchors.lengths, hold)
         constraints = replace(
             _eased(own, inv_mass == 0.0),
             distances=Distances.joined([own.distances, anchored]),
@@ -102,6 +108,14 @@ def build_skin_model(
         model = Model(np.concatenate([mesh.positions, places]), constraints, inv_mass)
     notes = tuple(dict.fromkeys(str(warning.message) for warning in caught))
     return SkinModel(model, n, held, notes)
+
+
+def _corner_share(
+    mechanics: Mechanics, anchors: Anchors, scale: float, p: FaithfulParameters
+) -> FloatArray:
+    """Return the share (a,) of its stiffness that each anchor keeps beside the mouth corners."""
+    near = mechanics.lips.to_corner[anchors.vertices]
+    return p.corner_hold + (1.0 - p.corner_hold) * smooth_step(near / (p.corner_reach * scale))
 
 
 def _own_constraints(mesh: TriMesh, p: FaithfulParameters) -> Constraints:
