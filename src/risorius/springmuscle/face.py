@@ -224,8 +224,13 @@ class SpringFace:
         return LiveFace(self)
 
     def spread(self, skin: FloatArray, values: Mapping[str, float]) -> FloatArray:
-        """Return the displacement (n, 3) of all input vertices from the skin's (w, 3) [mm]."""
+        """Return the displacement (n, 3) of all input vertices from the skin's (w, 3) [mm].
+
+        Bone and teeth take their part of what goes inwards; jaw, lids and all other parts follow,
+        then contact.
+        """
         part = self.head.skin
+        skin = self.springs.supported(skin, self.parameters.support)
         if self.parameters.carried:
             result = self.mechanics.pose(skin, values)
         else:

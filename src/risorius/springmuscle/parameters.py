@@ -84,6 +84,8 @@ class SpringParameters:
         Mass of a particle: the sum of the stiffness around it, or 1.
     even : bool
         Average with the mirrored pose on a symmetric head.
+    support : float
+        Share of the inward motion that bone and teeth take away.
     contact : bool
         Keep the skin off teeth and eyeballs and the lips off each other.
     relaxation : int
@@ -118,6 +120,7 @@ class SpringParameters:
     carried: bool = False
     masses: Masses = "unit"
     even: bool = False
+    support: float = 0.0
     contact: bool = False
     relaxation: int = 10
     motion: LeapfrogParameters = _PUBLISHED_MOTION
@@ -133,6 +136,7 @@ class SpringParameters:
         ):  # fmt: skip
             as_number(name, getattr(self, name), low=0.0)
         as_number("resting", self.resting, low=0.0, high=1.0)
+        as_number("support", self.support, low=0.0, high=1.0)
         if self.relaxation < 0:
             raise ParameterError(f"relaxation: {self.relaxation} must be 0 or more")
         one_of("masses", self.masses, ("stiffness", "unit"))
@@ -167,10 +171,11 @@ PROFILES: dict[str, SpringParameters] = {
         bone_stiffness=0.0,
         jaw_stiffness=0.0,
         home=0.0,
-        tissue=0.1,
+        tissue=0.2,
         carried=True,
         masses="stiffness",
         even=True,
+        support=0.4,
         contact=True,
         motion=LeapfrogParameters(),
     ),

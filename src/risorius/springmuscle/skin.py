@@ -13,6 +13,7 @@ from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.skin import Skin
 from risorius.anatomy.smooth_step import smooth_step
+from risorius.anatomy.support import support_directions
 from risorius.errors import ParameterError
 from risorius.mesh.boundary import boundary_loops
 from risorius.mesh.connectivity import edges
@@ -77,6 +78,8 @@ class SkinSprings:
         Of their springs, then of the partners if there are any.
     tissue : (n,) float64
         Stiffness of what draws the skin home, without grips.
+    outwards : (n, 3) float64
+        Unit normals of the bone and teeth beneath, smooth.
     across_count : int
         How many edges, the last ones, run from lining to the skin in front of it.
     seals : (q, 2) int32
@@ -100,9 +103,17 @@ class SkinSprings:
     on_jaw: BoolArray
     bone_stiffness: FloatArray
     tissue: FloatArray
+    outwards: FloatArray
     across_count: int = 0
     seals: IntArray = field(default_factory=_no_pairs)
     seal_stiffness: float = 0.0
+
+    def supported(self, moved: FloatArray, share: float) -> FloatArray:
+        """Return displacements (n, 3) [mm] without a share of what goes inwards."""
+        if share == 0.0:
+            return moved
+        inwards = np.minimum(np.einsum("nd,nd->n", moved, self.outwards), 0.0)
+        return moved - (share * inwards)[:, None] * self.outwards
 
     @cached_property
     def sealed(self) -> SpringNetwork:
@@ -187,6 +198,9 @@ def build_springs(
     both = 2 if p.mirrors else 1
     reach = np.linalg.norm(positions[vertices] - rest_feet, axis=1)
     bone_reach = np.linalg.norm(positions[bone_vertices] - bone_feet, axis=1)
+    outwards = support_directions(
+        positions, hinge=mechanics.jaw.hinge, face_height=mechanics.head.height / 1.9
+    )
     fixed = (skin.mobility <= 0.0) | (skin.mass <= 1e-9)
     fixed[_neck(skin)] = True
     network = SpringNetwork(
@@ -201,8 +215,8 @@ def build_springs(
     network = replace(network, load=-edge_forces(network, positions))
     return SkinSprings(
         skin, network, vertices, segments, numbers, feet, partners, rest_feet, stiffness, shares,
-        bone_vertices, bone_feet, on_jaw, np.tile(bone_stiffness, both), tissue, len(through),
-        _touching(skin), p.seal * unit,
+        bone_vertices, bone_feet, on_jaw, np.tile(bone_stiffness, both), tissue,
+        outwards, len(through), _touching(skin), p.seal * unit,
     )  # fmt: skip
 
 
