@@ -66,7 +66,7 @@ class Page:
             self.tabs = ui.tabs(on_change=self._turn).props("vertical dense")
             with self.tabs:
                 for panel in self.panels:
-                    ui.tab(panel.name, icon=panel.icon).mark(f"tab-{panel.name.lower()}")
+                    ui.tab(panel.name, icon=panel.icon).props(f"data-mark=tab-{panel.name.lower()}")
         with (
             ui.element("div").classes("st-panel"),
             ui.tab_panels(self.tabs, value=self.active.name, animated=False).props("keep-alive"),

@@ -43,22 +43,30 @@ class TopBar:
         page = self.page
         with ui.element("div").classes("st-top"):
             ui.label("risorius").classes("st-brand")
-            self._file = ui.label().classes("st-file").mark("file")
-            self._kept = ui.label().classes("st-kept").mark("kept")
+            self._file = ui.label().classes("st-file").props("data-mark=file")
+            self._kept = ui.label().classes("st-kept").props("data-mark=kept")
             ui.element("div").classes("st-sep")
-            self._undo = self._button("undo", "Undo", page.safely(page.undo)).mark("undo")
-            self._redo = self._button("redo", "Do again", page.safely(page.redo)).mark("redo")
+            self._undo = self._button("undo", "Undo", page.safely(page.undo)).props(
+                "data-mark=undo"
+            )
+            self._redo = self._button("redo", "Do again", page.safely(page.redo)).props(
+                "data-mark=redo"
+            )
             ui.space()
             for group in GROUPS:
                 self._layer(group)
             ui.element("div").classes("st-sep")
             for preset, icon, tip in _VIEWS:
-                self._button(icon, tip, lambda p=preset: page.view.look(p)).mark(f"view-{preset}")
+                self._button(icon, tip, lambda p=preset: page.view.look(p)).props(
+                    f"data-mark=view-{preset}"
+                )
             self._two = self._button(
                 "vertical_split", "Two views: outside and inside (2)", self.toggle_layout
-            ).mark("two-views")
+            ).props("data-mark=two-views")
             self._button("photo_camera", "Save a picture of this view", self._picture)
-            self._button("help_outline", "Keys and gestures (?)", show_shortcuts).mark("help")
+            self._button("help_outline", "Keys and gestures (?)", show_shortcuts).props(
+                "data-mark=help"
+            )
 
     def _button(self, icon: str, tip: str, action: object) -> ui.button:
         button = ui.button(icon=icon, on_click=action)  # pyright: ignore[reportArgumentType]
@@ -69,7 +77,7 @@ class TopBar:
         with ui.element("div").style("width:92px;padding:0 6px"):
             ui.label(group.capitalize()).style("font-size:11px;line-height:12px;color:var(--dim)")
             slider = ui.slider(min=0.0, max=1.0, step=0.05, value=self.page.opacity[group])
-            slider.props("dense").style("height:14px").mark(f"layer-{group}")
+            slider.props("dense").style("height:14px").props(f"data-mark=layer-{group}")
             slider.tooltip(f"How solid: {group}")
 
             def changed(event: ValueChangeEventArguments[Any], group: str = group) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
@@ -12,11 +12,14 @@ import numpy as np
 
 from risorius._check import FloatArray
 from risorius.controls.control import Control, Pose
-from risorius.errors import RisoriusError
+from risorius.errors import ParameterError, RisoriusError
+from risorius.rig.rig import Rig
 from risorius.studio import frames
+from risorius.studio.baking import bake_subject
 from risorius.studio.document import Document, Work
 from risorius.studio.heat import heat_of, paint
 from risorius.studio.hub import Hub
+from risorius.studio.jobs import Job
 from risorius.studio.scene import GROUPS, Stage, stage_of
 from risorius.studio.subject import Subject, build_subject
 
@@ -73,6 +76,7 @@ class Workshop:
         self._serial = 0
         self._wish = asyncio.Event()
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="face")
+        self._baked: tuple[Any, Rig] | None = None
         self._task: asyncio.Task[None] | None = None
 
     # -- life -------------------------------------------------------------------------------
@@ -175,6 +179,25 @@ class Workshop:
         self._wish.set()
         self.tell("document")
         self.tell("pose")
+
+    def rig(self, sets: Sequence[str], job: Job) -> Rig:
+        """Bake the face at hand, or return what was baked of it before; runs in any thread.
+
+        Raises
+        ------
+        ParameterError
+            If there is no face yet.
+        Cancelled
+            If a person stopped it.
+        """
+        subject = self.subject
+        if subject is None:
+            raise ParameterError("face: still being built; a moment")
+        key = (subject.face, tuple(sets), tuple(self.document.work.poses))
+        if self._baked is None or self._baked[0] != key:
+            current = replace(subject, work=self.document.work)
+            self._baked = (key, bake_subject(current, sets, job))
+        return self._baked[1]
 
     # -- the loop ---------------------------------------------------------------------------
 

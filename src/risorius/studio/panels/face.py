@@ -40,18 +40,20 @@ class FacePanel(Panel):
                 for name in EMOTIONS:
                     ui.button(
                         name, on_click=self.page.safely(lambda n=name: self._emotion(n))
-                    ).props("flat dense no-caps").classes("st-chip").mark(f"emotion-{name}")
+                    ).props("flat dense no-caps").classes("st-chip").props(
+                        f"data-mark=emotion-{name}"
+                    )
             with ui.element("div").classes("st-row"):
                 ui.label("intensity").classes("st-name")
                 slider = ui.slider(min=0.0, max=1.0, step=0.01, value=1.0).props("dense")
-                slider.on_value_change(self._intense).mark("intensity")
+                slider.on_value_change(self._intense).props("data-mark=intensity")
                 self._shown = ui.label("100 %").classes("st-number")
             with ui.row().style("gap:6px"):
                 ui.button("Rest", icon="restart_alt", on_click=self._rest).props(
                     "flat dense no-caps"
-                ).classes("st-chip").mark("rest")
-                ui.switch("both sides", value=True, on_change=self._join).props("dense").mark(
-                    "both-sides"
+                ).classes("st-chip").props("data-mark=rest")
+                ui.switch("both sides", value=True, on_change=self._join).props("dense").props(
+                    "data-mark=both-sides"
                 )
         self._own = ui.column().classes("st-group")
         self._pads()
@@ -98,7 +100,7 @@ class FacePanel(Panel):
                 slider = ui.slider(
                     min=first.low, max=first.high, step=(first.high - first.low) / 200, value=0.0
                 ).props("dense")
-                slider.mark(f"control-{row.name if joined else first.name}")
+                slider.props(f"data-mark=control-{row.name if joined else first.name}")
                 label = ui.label("0").classes("st-number") if joined else None
                 for control in controls:
                     self._sliders.setdefault(control.name, []).append((control, slider, label))
@@ -204,20 +206,22 @@ class FacePanel(Panel):
                     ).props("flat dense no-caps").classes("st-chip")
                 ui.button("keep this one", icon="add", on_click=self._ask_name).props(
                     "flat dense no-caps"
-                ).classes("st-chip").mark("keep-pose")
+                ).classes("st-chip").props("data-mark=keep-pose")
 
     def _recall(self, name: str) -> None:
         self.shop.replace_pose(dict(self.shop.document.work.poses[name]), f"Pose {name}")
 
     def _ask_name(self) -> None:
         with ui.dialog() as dialog, ui.card():
-            entry = ui.input("Name of the pose").mark("pose-name")
+            entry = ui.input("Name of the pose").props("data-mark=pose-name")
 
             def keep() -> None:
                 self._keep_pose(str(entry.value or "").strip())
                 dialog.close()
 
-            ui.button("Keep", on_click=self.page.safely(keep)).classes("st-act").mark("pose-ok")
+            ui.button("Keep", on_click=self.page.safely(keep)).classes("st-act").props(
+                "data-mark=pose-ok"
+            )
         dialog.open()
 
     def _keep_pose(self, name: str) -> None:

@@ -38,7 +38,7 @@ class HeatGroup:
         """Make the elements."""
         with group("Paint on the skin"):
             choice = ui.toggle(list(HEATS), value="none", on_change=self._change)
-            choice.props("dense no-caps flat size=sm").mark("heat")
+            choice.props("dense no-caps flat size=sm").props("data-mark=heat")
             self._scale = ui.element("div").classes("st-scale")
             self._words = ui.label().classes("st-help")
             self._scale.set_visibility(False)

@@ -35,7 +35,7 @@ class LandmarkPanel(Panel):
         self.chosen = ""
         self._shown: object = None
         heading("Landmarks", "Points that the face is fitted by. Left is the character's left.")
-        self._count = ui.label().classes("st-help").mark("landmark-count")
+        self._count = ui.label().classes("st-help").props("data-mark=landmark-count")
         self._card = ui.column().classes("st-group")
         self._list = ui.column().classes("st-group").style("gap:1px")
 
@@ -101,7 +101,9 @@ class LandmarkPanel(Panel):
 
     def _button(self, text: str, icon: str, act: Any) -> None:
         button = ui.button(text, icon=icon, on_click=self.page.safely(act))
-        button.props("flat dense no-caps").classes("st-chip").mark(f"landmark-{text.lower()}")
+        button.props("flat dense no-caps").classes("st-chip").props(
+            f"data-mark=landmark-{text.lower()}"
+        )
 
     def _handles(self) -> None:
         subject = self.shop.subject

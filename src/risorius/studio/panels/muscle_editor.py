@@ -96,7 +96,7 @@ class MuscleEditor:
 
     def build(self) -> None:
         """Make the elements."""
-        self._frame = ui.column().classes("st-group").mark("editor")
+        self._frame = ui.column().classes("st-group").props("data-mark=editor")
         self._frame.set_visibility(False)
 
     # -- which ------------------------------------------------------------------------------
@@ -146,7 +146,7 @@ class MuscleEditor:
         with ui.element("div").classes("st-row"):
             ui.label("contract").style("color:var(--accent)")
             slider = ui.slider(min=0.0, max=1.0, step=0.01, value=0.0).props("dense")
-            slider.mark("contract")
+            slider.props("data-mark=contract")
             slider.on("update:model-value", self.panel.page.safely(self._move), throttle=0.03)
             slider.on("change", self.panel.page.safely(self._keep_pose))
             self._slider = slider
@@ -155,7 +155,7 @@ class MuscleEditor:
     def _of_map(self, muscle: Muscle) -> None:
         page = self.panel.page
         entry = ui.input("name", value=muscle.name).props("dense").style("width:100%")
-        entry.mark("muscle-name")
+        entry.props("data-mark=muscle-name")
         entry.on("blur", page.safely(lambda _: self._rename(str(entry.value or ""))))
         entry.on("keydown.enter", page.safely(lambda _: self._rename(str(entry.value or ""))))
         with ui.row().style("gap:4px;align-items:center"):
@@ -197,7 +197,7 @@ class MuscleEditor:
             step = 1.0 if label == "fibres" else (high - low) / 200.0
             slider = ui.slider(min=low, max=max(high, value), step=step, value=value)
             shown = ui.label(f"{value:.3g}").classes("st-number")
-            slider.props("dense").mark(f"number-{label.replace(' ', '-')}")
+            slider.props("dense").props(f"data-mark=number-{_slug(label)}")
 
             def changed(event: ValueChangeEventArguments[Any]) -> None:
                 shown.set_text(f"{float(event.value):.3g}")
@@ -343,3 +343,7 @@ class MuscleEditor:
             self.shop.try_out(work)
         else:
             self.shop.change(f"{title_of(name)}: move {key}", work)
+
+
+def _slug(text: str) -> str:
+    return text.lower().replace(" ", "-")

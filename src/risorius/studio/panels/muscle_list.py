@@ -28,7 +28,9 @@ class MuscleList:
 
     def build(self) -> None:
         """Make the elements."""
-        self._frame = ui.column().classes("st-group").style("gap:2px").mark("muscle-list")
+        self._frame = (
+            ui.column().classes("st-group").style("gap:2px").props("data-mark=muscle-list")
+        )
 
     def fill(self) -> None:
         """Show the muscles there are, if they have changed."""
@@ -71,7 +73,7 @@ class MuscleList:
         hidden = bodies[0] in page.hidden
         chosen = panel.shop.show.selected in (*bodies, name)
         classes = f"st-item {'on' if chosen else ''} {'off' if hidden else ''}"
-        with ui.element("div").classes(classes).mark(f"muscle-{name}") as row:
+        with ui.element("div").classes(classes).props(f"data-mark=muscle-{name}") as row:
             row.on("click", page.safely(lambda _: panel.select(bodies[0])))
             ui.label(title_of(name)).classes("st-name")
             locked = name in panel.locked

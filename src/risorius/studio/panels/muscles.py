@@ -41,10 +41,10 @@ class MusclePanel(Panel):
         heading("Muscles", "Draw them on the skull; the face moves at once.")
         self._method = ui.toggle(_METHODS, value=self.shop.document.work.project.method)
         self._method.props("dense no-caps").on_value_change(self.page.safely(self._set_method))
-        self._method.mark("method")
+        self._method.props("data-mark=method")
         with group("New muscle") as self._new:
             self._name = ui.input("name", value="new_muscle").props("dense").style("width:100%")
-            self._name.mark("new-name")
+            self._name.props("data-mark=new-name")
             with ui.row().style("gap:6px"):
                 self._buttons: dict[str, ui.button] = {
                     kind: self.action(text, icon, lambda k=kind: self.begin(cast(SketchKind, k)))
@@ -55,11 +55,11 @@ class MusclePanel(Panel):
                     )
                 }
             self._mirror = ui.switch("mirror to the other side", value=True).props("dense")
-            self._mirror.mark("mirror")
+            self._mirror.props("data-mark=mirror")
             self._skin = ui.switch("draw on the skin, too", on_change=self._aim).props("dense")
             with ui.row().style("gap:6px") as self._drawing:
-                self.action("Keep it", "check", self.finish).mark("finish")
-                self.action("Stop", "close", self.cancel).mark("cancel")
+                self.action("Keep it", "check", self.finish).props("data-mark=finish")
+                self.action("Stop", "close", self.cancel).props("data-mark=cancel")
             self._drawing.set_visibility(False)
         self.editor = MuscleEditor(self)
         self.editor.build()
@@ -70,7 +70,7 @@ class MusclePanel(Panel):
     def action(self, text: str, icon: str, act: Any) -> ui.button:
         """Place a button."""
         button = ui.button(text, icon=icon, on_click=self.page.safely(act))
-        button.props("flat dense no-caps").classes("st-chip").mark(text.lower().replace(" ", "-"))
+        button.props("flat dense no-caps").classes("st-chip").props(f"data-mark={_slug(text)}")
         return button
 
     # -- coming and going -------------------------------------------------------------------
@@ -295,3 +295,7 @@ class MusclePanel(Panel):
         """Return the name of a muscle of the map from that of its body or control."""
         names = work.muscle_map.by_name
         return name if name in names else name.removesuffix("_l").removesuffix("_r")
+
+
+def _slug(text: str) -> str:
+    return text.lower().replace(" ", "-")

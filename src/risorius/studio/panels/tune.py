@@ -34,7 +34,7 @@ class TunePanel(Panel):
         heading("Tune by choosing", "Nine faces; click up to three you like, the best first.")
         with group("What"):
             self._expression = ui.select(list(EMOTIONS), value="joy").props("dense")
-            self._expression.style("width:100%").mark("tune-expression")
+            self._expression.style("width:100%").props("data-mark=tune-expression")
             self._what = ui.toggle(
                 {"pose": "strength of muscles", "muscles": "muscles themselves"}, value="pose"
             ).props("dense no-caps flat size=sm")
@@ -42,7 +42,7 @@ class TunePanel(Panel):
                 self._button("Begin", "play_arrow", self._begin)
                 self._button("Stop", "close", self._end)
         with group("Generation") as self._group:
-            self._state = ui.label().mark("generation")
+            self._state = ui.label().props("data-mark=generation")
             with ui.row().style("gap:6px"):
                 self._button("Next faces", "navigate_next", self._next)
                 self._button("Back", "navigate_before", self._back)
@@ -58,7 +58,7 @@ class TunePanel(Panel):
     def _button(self, text: str, icon: str, act: Any) -> None:
         button = ui.button(text, icon=icon, on_click=self.page.safely(act))
         button.props("flat dense no-caps").classes("st-chip")
-        button.mark(f"tune-{text.lower().replace(' ', '-')}")
+        button.props(f"data-mark=tune-{_slug(text)}")
 
     def refresh(self, what: str) -> None:
         """Follow a change."""
@@ -195,3 +195,7 @@ class TunePanel(Panel):
             self._toggle(int(key) - 1)
             return True
         return False
+
+
+def _slug(text: str) -> str:
+    return text.lower().replace(" ", "-")
