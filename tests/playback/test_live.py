@@ -125,6 +125,7 @@ def test_a_face_of_springs_plays_its_physics_and_the_same_bytes_again() -> None:
     assert apart[3] < 0.5 * apart[0]
 
 
+@pytest.mark.slow
 def test_the_published_layered_face_plays_its_physics() -> None:
     face = FaithfulFace.build(builtin_face().head)
     rig = _rig().subset(["jaw_pitch", "zygomaticus_major_l"])
