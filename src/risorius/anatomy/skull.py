@@ -21,12 +21,15 @@ from risorius.mesh.core import TriMesh
 from risorius.mesh.polygon_mesh import PolygonMesh
 from risorius.spatial.hull import convex_hull
 from risorius.warp.rbf import RbfWarp
-from risorius.warp.similarity import fit_similarity
+from risorius.warp.similarity import Similarity, fit_similarity
 
 __all__ = ["Skull", "builtin_skull", "dental_arches", "load_skull"]
 
 # Fewest bone landmarks that place a foreign skull.
 _FEWEST = 6
+# How far its landmarks may lie from the map's, as share of their spread, and below which share of
+# that misfit their mirror image is taken for what was meant.
+_STRANGE, _MIRRORED = 0.4, 0.6
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +96,8 @@ def load_skull(
     FormatError
         If a file is missing or malformed.
     LandmarkError
-        If fewer than six bone landmarks are shared with the map.
+        If fewer than six bone landmarks are shared with the map, their left and right are
+        exchanged, or they do not lie like those of a skull.
     MeshError
         If one file does not hold two bones.
     """
@@ -102,7 +106,7 @@ def load_skull(
     own = resolve(read_bone_landmarks(landmarks, meshes), joined)
     bones = _bones(joined) if len(meshes) == 1 else _split(joined, meshes)
     source, target = _shared(own, marks, landmarks)
-    place = fit_similarity(source, target)
+    place = _placed(source, target, landmarks)
     bones = [TriMesh(place.apply(bone.positions), bone.faces) for bone in bones]
     head = builtin_head()
     carry = RbfWarp.fit(
@@ -123,6 +127,31 @@ def _shared(
             f"needed; add some of {', '.join(missing[:12])}"
         )
     return own.positions(names), np.array([marks[name] for name in names])
+
+
+def _placed(source: FloatArray, target: FloatArray, path: Path) -> Similarity:
+    """Return the similarity from the skull's landmarks (k, 3) to those of the map (k, 3)."""
+    size = float(np.linalg.norm(target - target.mean(axis=0), axis=1).max())
+    place = fit_similarity(source, target)
+    off = _misfit(place, source, target)
+    mirrored = source * [-1.0, 1.0, 1.0]
+    if _misfit(fit_similarity(mirrored, target), mirrored, target) < _MIRRORED * off:
+        raise LandmarkError(
+            f"{path}: left and right bone landmarks are exchanged (the sides are the character's "
+            "own); exchange _l and _r in the file"
+        )
+    if off > _STRANGE * size:
+        raise LandmarkError(
+            f"{path}: bone landmarks lie {off / size:.0%} of the skull's size from where those of "
+            f"a skull lie, {_STRANGE:.0%} are allowed; check that names, vertices and the mesh "
+            "belong together"
+        )
+    return place
+
+
+def _misfit(place: Similarity, source: FloatArray, target: FloatArray) -> float:
+    """Return the root mean square distance of placed landmarks from their targets [mm]."""
+    return float(np.sqrt(((place.apply(source) - target) ** 2).sum(axis=1).mean()))
 
 
 def _moved(mesh: TriMesh, head: Head) -> TriMesh:

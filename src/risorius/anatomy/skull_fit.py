@@ -118,8 +118,9 @@ def fit_skull(skull: Skull, head: Head, *, symmetric: bool, hidden: BoolArray) -
         _, first = np.unique(source.round(2), axis=0, return_index=True)
         source, target = source[first], target[first]
     carry = Carry(RbfWarp.fit(source, target, regularisation=1e-9), symmetric)
+    foreign = skull.carry is not None
     bones = [
-        _pushed_in(bone, carry(bone.positions), head, hidden, place.scale)
+        _pushed_in(bone, carry(bone.positions), head, hidden, place.scale, foreign=foreign)
         for bone in (skull.cranium, skull.mandible)
     ]
     return FittedSkull(bones[0], bones[1], place.scale, carry)
@@ -143,11 +144,13 @@ def _ray_pairs(
 
 
 def _pushed_in(
-    bone: TriMesh, points: FloatArray, head: Head, hidden: BoolArray, scale: float
+    bone: TriMesh, points: FloatArray, head: Head, hidden: BoolArray, scale: float, *, foreign: bool
 ) -> TriMesh:
     own, _, _ = _template_skin().depths(bone.positions)
-    # Bone that is shallower in its own head (nose, orbit) has no more to keep than that.
-    least = scale * np.clip(_KEEP * own, np.minimum(own, _LEAST), _MOST)
+    # Bone that is shallower in its own head (nose, orbit) has no more to keep than that; a skull
+    # that was not made for the built-in head may stick out of it, which is no depth to keep.
+    floor = np.full_like(own, _LEAST) if foreign else np.minimum(own, _LEAST)
+    least = scale * np.clip(_KEEP * own, floor, _MOST)
     skin = _Skin(head.skin.mesh, hidden)
     for _ in range(_ROUNDS):
         depth, normal, distance = skin.depths(points)
