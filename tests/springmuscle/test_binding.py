@@ -89,7 +89,10 @@ def test_closed_lips_bind_to_their_own_half_of_the_ring(name: str) -> None:
         )  # fmt: skip
         height = muscles.centres[found.segments, 1]
         line = 0.5 * sum(surface.measure.landmarks[key][1] for key in ("2.2", "2.3"))
-        lips = surface.lips[found.vertices]
+        # Cheeks beside the mouth are no lips.
+        beside = np.abs(surface.mesh.positions[found.vertices, 0])
+        within = beside < surface.measure.landmarks["2.4"][0]
+        lips = np.where(within, surface.lips[found.vertices], 0)
         # Clearly below the mouth's line and bound to clearly upper skin, or the other way round.
         return int(
             ((lips > 0) & (height < line - 2.0)).sum() + ((lips < 0) & (height > line + 2.0)).sum()

@@ -17,6 +17,8 @@ __all__ = ["make_fibres"]
 
 # Skin vertices that say which lip lies above an ellipsoid, and how many must agree.
 _ASKED, _AGREE = 4, 2
+# Ellipsoids of a ring this near to the height of the commissures may move both lips [mm].
+_LEVEL = 1.0
 # Two consecutive control points nearer than this count as one [mm].
 _EQUAL = 1e-6
 
@@ -110,8 +112,15 @@ def _lips_above(centres: FloatArray, normals: FloatArray, layer: Layer) -> npt.N
     seen = np.flatnonzero(~surface.hidden)
     above = centres + normals * layer.start(centres)[..., None]
     near = cKDTree(surface.mesh.positions[seen]).query(above.reshape(-1, 3), k=_ASKED)[1]
-    votes = labels[seen[near]].astype(np.int32).sum(axis=1)
+    voters = labels[seen[near]].astype(np.int32)
+    votes = voters.sum(axis=1)
     lips = np.where(np.abs(votes) >= _AGREE, np.sign(votes), 0)
+    if layer.outline.ring is not None:
+        # Where the skin is at odds, beside the commissures, height above them decides.
+        marks = surface.measure.landmarks
+        above_line = centres[..., 1].ravel() - 0.5 * (marks["2.4"] + marks["2.5"])[1]
+        odd = (lips == 0) & voters.any(axis=1) & (np.abs(above_line) > _LEVEL * surface.scale)
+        lips = np.where(odd, np.sign(above_line).astype(np.int32), lips)
     return lips.reshape(centres.shape[:2]).astype(np.int8)
 
 

@@ -63,7 +63,7 @@ class FitParameters:
     rows: int = 24
     columns: int = 9
     passes: int = 30
-    part: float = 0.7
+    part: float = 0.6
     jump: float = 9.0
     turn: float = 50.0
     overlap: float = 1.1

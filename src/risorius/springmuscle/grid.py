@@ -113,6 +113,9 @@ class Patch:
         [mm].
     radii : (k,) float64
         Of the triangles around their middles [mm].
+    taken : (k,) bool
+        Triangles that muscles are fitted under; the others, walls of folds, only hide what lies
+        behind them.
     edge : float
         Mean length of an edge [mm].
     reach : float
@@ -124,6 +127,7 @@ class Patch:
     normals: FloatArray
     middles: FloatArray
     radii: FloatArray
+    taken: BoolArray
     edge: float
     reach: float
 
@@ -132,7 +136,7 @@ class Patch:
         distances, hit = np.full(len(points), np.nan), np.full(len(points), -1, np.int32)
         cast_lines(
             np.ascontiguousarray(points), np.ascontiguousarray(directions), self.corners,
-            self.normals, self.middles, self.radii, self.reach, distances, hit,
+            self.normals, self.middles, self.radii, self.taken, self.reach, distances, hit,
         )  # fmt: skip
         return distances, hit
 
@@ -210,7 +214,7 @@ def _cross(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray, out: Floa
 
 
 def find_patch(layout: Layout, surface: SkinSurface, parameters: FitParameters) -> Patch:
-    """Collect the visible triangles under an outline that face it and lie in no fold."""
+    """Collect the visible triangles under an outline that face it, and tell walls of folds."""
     samples = _outline_samples(layout.points)
     scale, middles = surface.scale, surface.face_tree.data
     reach = _NEAR * scale
@@ -224,14 +228,14 @@ def find_patch(layout: Layout, surface: SkinSurface, parameters: FitParameters) 
     normals = surface.face_normals[rows]
     kept = distance < np.maximum(reach, _OWN * 2.0 * radii[rows])
     kept &= np.einsum("kd,kd->k", normals, out) > _FACING
-    kept &= surface.face_turns[rows] > np.cos(np.radians(parameters.turn))
     rows = rows[kept].astype(np.int32)
+    taken = surface.face_turns[rows] > np.cos(np.radians(parameters.turn))
     corners = np.ascontiguousarray(surface.corners[rows])
-    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-    edge = float(sides.mean()) if len(rows) else reach
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)[taken]
+    edge = float(sides.mean()) if len(sides) else reach
     return Patch(
         surface.visible[rows], corners, np.ascontiguousarray(surface.face_normals[rows]),
-        np.ascontiguousarray(middles[rows]), np.ascontiguousarray(radii[rows]), edge,
+        np.ascontiguousarray(middles[rows]), np.ascontiguousarray(radii[rows]), taken, edge,
         _REACH * scale,
     )  # fmt: skip
 

@@ -24,6 +24,8 @@ _PATIENCE, _GAIN = 4, 0.8
 _AROUND = 12
 # How much of the way to the middle of their range points go per round, and how far at most.
 _STEP, _FARTHEST = 0.5, 1.5
+# Rounds in which points without skin go between their neighbours.
+_ROUNDS = 12
 # Rows of a cut closer to the middle of the face than this share of a cell are one cut.
 _MIDDLE = 0.02
 
@@ -93,6 +95,7 @@ class _Work:
     normals: FloatArray
     rows: FloatArray
     cells: _Cells
+    afloat: BoolArray
     missed: int = 0
     passes: int = 0
     stopped: Literal["fits", "small", "stagnation", "limit"] = "limit"
@@ -104,13 +107,13 @@ class _Work:
         counts = self.cells.counts
         inside = float(counts[..., 2].sum()) / max(float(counts[..., 1].sum()), 1.0)
         if inside > self.best[0]:
-            state = self.points.copy(), self.normals.copy(), self.rows.copy(), deepcopy(self.cells)
-            self.best = inside, state
+            state = (self.points, self.normals, self.rows, self.afloat, self.cells)
+            self.best = inside, deepcopy(state)
 
     def recall(self) -> None:
         """Go back to the best grid."""
         if self.best[1] is not None:
-            self.points, self.normals, self.rows, self.cells = self.best[1]
+            self.points, self.normals, self.rows, self.afloat, self.cells = self.best[1]
 
     def renew_normals(self) -> None:
         before = self.normals
@@ -132,8 +135,9 @@ class _Work:
         cells, patch = self.cells, self.patch
         measure_cells(
             np.ascontiguousarray(self.points), np.ascontiguousarray(self.normals), cells.dirty,
-            patch.corners, patch.normals, patch.middles, patch.radii, patch.edge, patch.reach,
-            low, high, cells.near, cells.far, cells.near_place, cells.far_place, cells.counts,
+            patch.corners, patch.normals, patch.middles, patch.radii, patch.taken, patch.edge,
+            patch.reach, low, high, cells.near, cells.far, cells.near_place, cells.far_place,
+            cells.counts,
         )  # fmt: skip
         cells.dirty[:] = False
         return low, high
@@ -144,6 +148,7 @@ class _Work:
         jump = self.parameters.jump * self.surface.scale
         placed, kept = self.patch.place(self.points[rows], normals[rows], depth, jump)
         self.points[rows] = placed
+        self.afloat[rows] = kept
         self.missed += int(kept.sum())
         if self.closed:
             self.points[-1] = self.points[0]
@@ -172,12 +177,14 @@ def refine(layout: Layout, layer: Layer, patch: Patch, *, mirror: bool) -> Refin
     work = _Work(
         layer, patch, surface, parameters, layout.closed, mirror, layout.points.copy(),
         grid_normals(layout.points, surface, layout.closed), np.arange(rows, dtype=np.float64),
-        _Cells.unknown(rows, columns),
+        _Cells.unknown(rows, columns), np.zeros((rows, columns), bool),
     )  # fmt: skip
     work.put(np.ones((rows, columns), bool), work.normals)
     _divide_long(work)
     while work.passes < parameters.passes and _divide_worst(work):
         pass
+    if parameters.settle and work.afloat.any():
+        _lay_between(work)
     for _ in range(parameters.settle):
         _settle(work)
     if parameters.settle:
@@ -300,6 +307,7 @@ def _cut(work: _Work, axis: int, at: int, share: float) -> None:
     between = between / np.where(length > 0.0, length, 1.0)
     work.normals = np.insert(work.normals, at + 1, between, axis=axis)
     work.points = points
+    work.afloat = np.insert(work.afloat, at + 1, True, axis=axis)
     fresh = np.zeros(points.shape[:2], bool)
     fresh[(at + 1, slice(None)) if axis == 0 else (slice(None), at + 1)] = True
     if axis == 0:
@@ -307,6 +315,21 @@ def _cut(work: _Work, axis: int, at: int, share: float) -> None:
         work.rows = np.insert(work.rows, at + 1, place)
     work.cells.divided(at, axis)
     work.put(fresh, work.normals)
+
+
+def _lay_between(work: _Work) -> None:
+    """Lay the points that found no skin between their neighbours: under a fold, across it."""
+    for _ in range(_ROUNDS):
+        total, count = np.zeros_like(work.points), np.zeros_like(work.points[..., :1])
+        for to, of in ((np.s_[1:], np.s_[:-1]), (np.s_[:-1], np.s_[1:])):
+            total[to] += work.points[of]
+            count[to] += 1.0
+            total[:, to] += work.points[:, of]
+            count[:, to] += 1.0
+        work.points[work.afloat] = (total / count)[work.afloat]
+    if work.closed:
+        work.points[-1] = work.points[0]
+    work.cells.dirty[:] = True
 
 
 def _settle(work: _Work) -> None:

@@ -40,8 +40,13 @@ def line_meets(x, y, z, dx, dy, dz, corners, t):
 
 
 @njit(**FLAGS)
-def nearest_meeting(x, y, z, dx, dy, dz, corners, normals, middles, radii, chosen, count, reach):
-    """Return signed distance and triangle of the meeting nearest to the point, nan and -1."""
+def nearest_meeting(
+    x, y, z, dx, dy, dz, corners, normals, middles, radii, taken, chosen, count, reach
+):  # fmt: skip
+    """Return signed distance and triangle of the meeting nearest to the point, nan and -1.
+
+    Triangles that are not `taken` hide what lies behind them.
+    """
     best, found = math.nan, -1
     for k in range(count):
         t = chosen[k]
@@ -56,6 +61,8 @@ def nearest_meeting(x, y, z, dx, dy, dz, corners, normals, middles, radii, chose
         distance = line_meets(x, y, z, dx, dy, dz, corners, t)
         if abs(distance) <= reach and not abs(distance) >= abs(best):
             best, found = distance, t
+    if found >= 0 and not taken[found]:
+        return math.nan, -1
     return best, found
 
 
@@ -93,7 +100,7 @@ def lean(normals, r, c, nx, ny, nz):
 
 
 @njit(**FLAGS)
-def cast_lines(points, directions, corners, normals, middles, radii, reach, distances, hit):
+def cast_lines(points, directions, corners, normals, middles, radii, taken, reach, distances, hit):
     """Fill signed distance and triangle of the skin nearest to each point along its direction."""
     chosen = np.empty(len(corners), np.int32)
     for i in range(len(points)):
@@ -101,13 +108,13 @@ def cast_lines(points, directions, corners, normals, middles, radii, reach, dist
         dx, dy, dz = directions[i, 0], directions[i, 1], directions[i, 2]
         count = gather(x, y, z, dx, dy, dz, 0.0, 0.0, reach, middles, radii, chosen)
         distances[i], hit[i] = nearest_meeting(
-            x, y, z, dx, dy, dz, corners, normals, middles, radii, chosen, count, reach
+            x, y, z, dx, dy, dz, corners, normals, middles, radii, taken, chosen, count, reach
         )
 
 
 @njit(**FLAGS)
 def measure_cells(
-    grid, grid_normals, dirty, corners, normals, middles, radii, edge, reach, low, high,
+    grid, grid_normals, dirty, corners, normals, middles, radii, taken, edge, reach, low, high,
     nearest, farthest, near_place, far_place, counts,
 ):  # fmt: skip
     """Measure the depth of the `dirty` cells of a grid (r, c, 3), by bilinear samples.
@@ -138,8 +145,8 @@ def measure_cells(
                     px, py, pz = blend(grid, r, c, w)
                     nx, ny, nz = unit_blend(grid_normals, r, c, w)
                     depth, found = nearest_meeting(
-                        px, py, pz, nx, ny, nz, corners, normals, middles, radii, chosen, count,
-                        reach,
+                        px, py, pz, nx, ny, nz, corners, normals, middles, radii, taken, chosen,
+                        count, reach,
                     )  # fmt: skip
                     if found < 0:
                         continue
