@@ -117,3 +117,11 @@ def test_a_file_says_which_shapes_drive_a_corrective(pairs, tmp_path) -> None:
     told = json["asset"]["extras"]["risorius"]["correctives"]
     assert told == {pair.name: [pair.first, pair.second] for pair in pairs}
     assert Rig.load(tmp_path / "x.glb").names == rig.names
+
+
+def test_a_shape_made_upon_another_forms_no_pairs() -> None:
+    poses = {name: default_presets().arkit[name] for name in NAMES}
+    upon = {"mouthClose": poses["jawOpen"]}
+    found = find_pairs(builtin_face(), poses, budget=10, upon=upon)
+    assert found
+    assert not any("mouthClose" in (pair.first, pair.second) for pair in found)

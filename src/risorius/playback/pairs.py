@@ -17,7 +17,6 @@ from risorius._check import FloatArray, as_number
 from risorius.controls.control import Pose
 from risorius.controls.pair_names import pair_name
 from risorius.controls.presets import mirrored
-from risorius.rig.bake import displacement
 from risorius.rig.face import Face
 from risorius.rig.rig import MorphTarget, Rig
 
@@ -80,7 +79,8 @@ def find_pairs(
     budget : int
         How many pairs, 1..1000. A pair and its mirror image are taken both or not at all.
     upon : mapping of str to Pose, optional
-        As for `risorius.rig.bake`.
+        As for `risorius.rig.bake`. Shapes that are made upon another mean nothing beside others
+        and form no pairs.
     progress : callable, optional
         Called with (done, all, name).
 
@@ -93,8 +93,8 @@ def find_pairs(
     six more for those that are kept.
     """
     budget = int(as_number("budget", budget, low=1, high=1000))
-    base = upon or {}
-    alone = {name: displacement(face, pose, upon=base.get(name)) for name, pose in poses.items()}
+    poses = {name: pose for name, pose in poses.items() if name not in (upon or {})}
+    alone = {name: face.displace(pose) for name, pose in poses.items()}
     candidates = _candidates(face, poses, alone)
     ranked: list[tuple[float, tuple[tuple[str, str], ...]]] = []
     for done, (common, same) in enumerate(candidates):
@@ -111,7 +111,7 @@ def find_pairs(
     for distance, same in ranked:
         if distance > _STILL and len(kept) + len(same) <= budget:
             kept.extend(same)
-    measure = _Measure(face, poses, alone, base)
+    measure = _Measure(face, poses, alone)
     found = [measure.of(*names) for names in kept]
     found.sort(key=lambda pair: (-_whole(pair.deltas), pair.first, pair.second))
     return tuple(found)
@@ -190,16 +190,11 @@ class _Measure:
     """Tries mixes of two shapes; what each makes by itself is tried once."""
 
     def __init__(
-        self,
-        face: Face,
-        poses: Mapping[str, Pose],
-        alone: Mapping[str, FloatArray],
-        upon: Mapping[str, Pose],
+        self, face: Face, poses: Mapping[str, Pose], alone: Mapping[str, FloatArray]
     ) -> None:
         self._face = face
         self._poses = poses
         self._alone = alone
-        self._upon = upon
         self._halves: dict[str, FloatArray] = {}
 
     def of(self, first: str, second: str) -> CorrectivePair:
@@ -226,10 +221,7 @@ class _Measure:
             return self._alone[name]
         if name not in self._halves:
             half = {control: share * value for control, value in self._poses[name].items()}
-            upon = self._upon.get(name)
-            if upon is not None:
-                upon = {control: share * value for control, value in upon.items()}
-            self._halves[name] = displacement(self._face, half, upon=upon)
+            self._halves[name] = self._face.displace(half)
         return self._halves[name]
 
 
