@@ -34,11 +34,12 @@ body, .q-btn, .q-field { font-family: Roboto, system-ui, sans-serif; font-size:1
 .st-group { width:100%; border:1px solid var(--line); border-radius:8px; padding:8px 10px;
   gap:4px; background:#23272c; }
 .st-head { font-size:11px; letter-spacing:.07em; text-transform:uppercase; color:var(--dim); }
-.st-row { display:grid; grid-template-columns:118px 1fr 34px; align-items:center; width:100%;
+.st-row { display:grid; grid-template-columns:118px 1fr 38px; align-items:center; width:100%;
   min-height:27px; column-gap:10px; }
 .st-row.two { grid-template-columns:118px 1fr 1fr; }
 .st-name { white-space:nowrap; overflow:hidden; text-overflow:ellipsis; }
-.st-number { color:var(--dim); text-align:right; font-variant-numeric:tabular-nums; }
+.st-number { color:var(--dim); white-space:nowrap; text-align:right;
+  font-variant-numeric:tabular-nums; }
 .st-hint { position:absolute; left:12px; bottom:12px; max-width:calc(100% - 24px);
   background:rgba(20,22,25,.86); border:1px solid var(--line); border-radius:8px;
   padding:7px 12px; color:var(--text); pointer-events:none; }
@@ -55,6 +56,9 @@ body, .q-btn, .q-field { font-family: Roboto, system-ui, sans-serif; font-size:1
 .st-chip { min-height:28px !important; padding:0 10px !important; text-transform:none;
   border-radius:14px !important; background:#2b3036 !important; color:var(--text) !important; }
 .st-act { text-transform:none; border-radius:8px !important; }
+.q-uploader { background:#191c1f !important; border-color:var(--line) !important; }
+.q-uploader__header { background:#2b3036 !important; color:var(--text) !important; }
+.q-uploader__list { min-height:8px; padding:4px; }
 .st-panel .q-slider { height:22px; }
 .st-panel .q-slider__track { background:#3a3f46; }
 .st-scale { width:100%; height:8px; border-radius:4px; background:linear-gradient(90deg,

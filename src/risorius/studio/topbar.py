@@ -46,31 +46,26 @@ class TopBar:
             self._file = ui.label().classes("st-file").props("data-mark=file")
             self._kept = ui.label().classes("st-kept").props("data-mark=kept")
             ui.element("div").classes("st-sep")
-            self._undo = self._button("undo", "Undo", page.safely(page.undo)).props(
-                "data-mark=undo"
-            )
-            self._redo = self._button("redo", "Do again", page.safely(page.redo)).props(
-                "data-mark=redo"
-            )
+            self._undo = self._button("undo", "Undo", page.safely(page.undo), "undo")
+            self._redo = self._button("redo", "Do again", page.safely(page.redo), "redo")
             ui.space()
             for group in GROUPS:
                 self._layer(group)
             ui.element("div").classes("st-sep")
             for preset, icon, tip in _VIEWS:
-                self._button(icon, tip, lambda p=preset: page.view.look(p)).props(
-                    f"data-mark=view-{preset}"
-                )
+                self._button(icon, tip, lambda p=preset: page.view.look(p), f"view-{preset}")
             self._two = self._button(
-                "vertical_split", "Two views: outside and inside (2)", self.toggle_layout
-            ).props("data-mark=two-views")
-            self._button("photo_camera", "Save a picture of this view", self._picture)
-            self._button("help_outline", "Keys and gestures (?)", show_shortcuts).props(
-                "data-mark=help"
+                "vertical_split",
+                "Two views: outside and inside (2)",
+                self.toggle_layout,
+                "two-views",
             )
+            self._button("photo_camera", "Save a picture of this view", self._picture, "picture")
+            self._button("help_outline", "Keys and gestures (?)", show_shortcuts, "help")
 
-    def _button(self, icon: str, tip: str, action: object) -> ui.button:
+    def _button(self, icon: str, tip: str, action: object, mark: str) -> ui.button:
         button = ui.button(icon=icon, on_click=action)  # pyright: ignore[reportArgumentType]
-        button.props("flat round dense size=sm color=grey-4").tooltip(tip)
+        button.props(f"flat round dense size=sm color=grey-4 data-mark={mark}").tooltip(tip)
         return button
 
     def _layer(self, group: str) -> None:
@@ -107,7 +102,7 @@ class TopBar:
             return
         document = self.page.shop.document
         self._file.set_text(document.keeper.path.name)
-        self._file.props["title"] = str(document.keeper.path)
+        self._file.props(f'title="{document.keeper.path}"')
         count = document.history[1]
         self._kept.set_text("kept" if count else "not changed yet")
         self._undo.set_enabled(bool(document.undo_label))

@@ -67,6 +67,8 @@ class ExportPanel(Panel):
     def leave(self) -> None:
         """Take the marks away."""
         self.page.view.overlay()
+        if self.shop.show.played is not None:
+            self.shop.present(played=None)
 
     def _chosen(self) -> tuple[str, ...]:
         sets = tuple(str(name) for name in self._sets.value or ())
@@ -117,7 +119,9 @@ class ExportPanel(Panel):
                 self._row(rig, report, sentence.split(":")[0], sentence, bad=True)
             worst = sorted(report.rows(), key=lambda row: -float(row["added"] or 0.0))[:12]
             for row in worst:
-                words = f"{row['shape']}: {row['largest']:.1f} mm, into {row['into'] or 'nothing'}"
+                words = f"{row['shape']}: moves {row['largest']:.1f} mm"
+                if row["into"]:
+                    words += f", {row['added']:.2f} mm into {row['into']}"
                 self._row(rig, report, str(row["shape"]), words, bad=False)
 
     def _row(self, rig: Rig, report: QualityReport, shape: str, words: str, *, bad: bool) -> None:

@@ -21,6 +21,7 @@ __all__ = ["LandmarkPanel"]
 
 _COLOURS = {"left": "#7fb4ff", "right": "#ff9d7f", "centre": "#ffd166"}
 _MISSING = "#6b7178"
+_GROUPS = ("skin", "parts")
 
 
 class LandmarkPanel(Panel):
@@ -118,7 +119,7 @@ class LandmarkPanel(Panel):
             at = head.landmarks.position(name) + 0.8 * normal
             handles.append(
                 {
-                    "id": name, "at": at.tolist(), "normal": normal.tolist(), "on": ["skin"],
+                    "id": name, "at": at.tolist(), "normal": normal.tolist(), "on": _GROUPS,
                     "colour": "#ffffff" if name == self.chosen
                     else _COLOURS[point.side if point else "centre"],
                     "label": f"{name}  {point.description if point else ''}",
@@ -136,7 +137,7 @@ class LandmarkPanel(Panel):
             self._aim()
 
     def _aim(self) -> None:
-        self.page.view.set(tool="draw", drawOn=["skin"])
+        self.page.view.set(tool="draw", drawOn=list(_GROUPS))
         self.page.say(f"Click where <b>{self.chosen}</b> lies on the head. <b>Escape</b> stops.")
 
     def _change(self, label: str, marks: dict[str, LandmarkSpec]) -> None:
@@ -165,8 +166,8 @@ class LandmarkPanel(Panel):
             if not name:
                 raise LandmarkError("landmarks: choose in the list which one to place")
             place = place_of(message, stage)
-            if place.group != "skin":
-                raise FormatError("landmarks: they lie on the skin")
+            if place.group not in _GROUPS:
+                raise FormatError("landmarks: they lie on the head, not on bone or muscle")
             head = self.subject.head
             there = head.frame.to_input(place.position[None])[0]
             marks = placed(self.shop.document.work.landmarks, name, there, head.source)

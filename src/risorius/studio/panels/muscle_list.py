@@ -28,9 +28,8 @@ class MuscleList:
 
     def build(self) -> None:
         """Make the elements."""
-        self._frame = (
-            ui.column().classes("st-group").style("gap:2px").props("data-mark=muscle-list")
-        )
+        self._frame = ui.column().classes("st-group").style("gap:2px")
+        self._frame.props("data-mark=muscle-list")
 
     def fill(self) -> None:
         """Show the muscles there are, if they have changed."""

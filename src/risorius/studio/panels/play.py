@@ -129,7 +129,8 @@ class PlayPanel(Panel):
         self.take_ = take
         name = source.name if isinstance(source, Path) else source.source
         self._title.set_text(f"{name}: {take.duration:.2f} s at {take.rate:g} frames per second")
-        self._slider.props(f"max={max(take.duration, 0.01):.4f}")
+        self._slider._props["max"] = max(take.duration, 0.01)
+        self._slider.update()
         self._curve.set_content(_svg(take))
         self._line.set_visibility(True)
         self._show(0.0)

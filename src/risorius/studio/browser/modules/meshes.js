@@ -153,14 +153,6 @@ export class MeshBook {
     this.settings = settings;
     for (const [name, entry] of this.byName) {
       const material = entry.mesh.material;
-      const opacity = settings.opacity[entry.group] ?? 1;
-      const clear = opacity < 0.999;
-      material.opacity = opacity;
-      if (material.transparent !== clear) {
-        material.transparent = clear;
-        material.depthWrite = !clear;
-        material.needsUpdate = true;
-      }
       const chosen = settings.selected && name === settings.selected;
       material.emissive.setHex(chosen ? 0x7a4a10 : 0x000000);
     }
@@ -177,7 +169,17 @@ export class MeshBook {
   }
 
   showFor(inner) {
-    for (const [name, entry] of this.byName) entry.mesh.visible = this.shows(name, inner);
+    for (const [name, entry] of this.byName) {
+      entry.mesh.visible = this.shows(name, inner);
+      const opacity = inner ? 1 : this.settings?.opacity[entry.group] ?? 1;
+      const material = entry.mesh.material, clear = opacity < 0.999;
+      material.opacity = opacity;
+      if (material.transparent !== clear) {
+        material.transparent = clear;
+        material.depthWrite = !clear;
+        material.needsUpdate = true;
+      }
+    }
     for (const set of this.sets) set.visible = false;
   }
 

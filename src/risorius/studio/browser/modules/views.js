@@ -2,6 +2,7 @@
 import { OrbitControls, THREE } from "nicegui-scene";
 
 const BACKGROUND = 0x1b1d20, LINE = 0x2c3036;
+const ANGLE = 24, NARROW = 0.85; // degrees; width over height
 const PRESETS = {
   front: [0, 0.02, 1], three_quarter: [0.62, 0.08, 0.78], left: [1, 0.02, 0.02],
   right: [-1, 0.02, 0.02], mouth: [0, 0, 1], eyes: [0, 0, 1],
@@ -15,7 +16,7 @@ export class Views {
     });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.renderer.setScissorTest(true);
-    this.camera = new THREE.PerspectiveCamera(24, 1, 10, 4000);
+    this.camera = new THREE.PerspectiveCamera(ANGLE, 1, 10, 4000);
     this.camera.position.set(0, 0, 900);
     const scene = viewport.meshes.scene;
     scene.add(new THREE.HemisphereLight(0xf2f4ff, 0x4a4038, 1.15));
@@ -43,7 +44,7 @@ export class Views {
     const spot = spots[preset];
     const target = new THREE.Vector3(...(spot || centre));
     const direction = new THREE.Vector3(...(PRESETS[preset] || PRESETS.front)).normalize();
-    const distance = (spot ? 0.95 : 3.15) * height;
+    const distance = (spot ? 0.95 : 3.3) * height;
     this.orbit.target.copy(target);
     this.camera.position.copy(target).addScaledVector(direction, distance);
     this.camera.up.set(0, 1, 0);
@@ -105,7 +106,11 @@ export class Views {
   }
 
   aim(w, h) {
-    this.camera.aspect = w / h;
+    const aspect = w / h, half = Math.tan((ANGLE * Math.PI) / 360);
+    this.camera.aspect = aspect;
+    // A narrow view shows as much across as a square one.
+    const fit = half * Math.max(1, NARROW / aspect);
+    this.camera.fov = (Math.atan(fit) * 360) / Math.PI;
     this.camera.updateProjectionMatrix();
   }
 
