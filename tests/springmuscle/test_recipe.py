@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -243,3 +244,26 @@ def test_a_face_that_contradicts_itself_is_refused() -> None:
     marks = [Landmark(n, (k,), (1.0,)) for k, n in enumerate(("3.7", "3.12", "2.2", "2.3"))]
     with pytest.raises(LandmarkError, match=r"the mouth \(2\.2, 2\.3\) lies -2\.0 mm below"):
         FaceMeasure.of(LandmarkSet(marks, points))
+
+
+_json = st.recursive(
+    st.one_of(st.none(), st.booleans(), st.floats(), st.integers(), st.text(max_size=6)),
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=4),
+        st.dictionaries(
+            st.sampled_from(("name", "kind", "rows", "centre", "line", "skin", "shares", "2.2")),
+            inner,
+            max_size=5,
+        ),
+    ),
+    max_leaves=20,
+)
+
+
+@given(entry=_json, kind=st.sampled_from(("linear", "sphincter")), rows=_json, centre=_json)
+def test_whatever_stands_in_a_file_is_read_or_refused(entry, kind, rows, centre) -> None:
+    muscles = [entry, {"name": "m", "kind": kind, "rows": rows, "centre": centre}]
+    for muscle in muscles:
+        document = {"schema": "risorius/outline-recipe", "version": 1, "muscles": [muscle]}
+        with suppress(FormatError, ParameterError):
+            parse_recipe(document, source="fuzz")
