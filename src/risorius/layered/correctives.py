@@ -6,14 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_matrix, csc_matrix, csr_matrix, diags
+from scipy.sparse import csc_matrix, csr_matrix, diags
 
 from risorius._check import FloatArray, IntArray
 from risorius.anatomy.mechanics import Mechanics
-from risorius.anatomy.outwards import unit
 from risorius.anatomy.skin import Skin
+from risorius.anatomy.swelling import Swelling
 from risorius.layered.kernels.turns import best_turns, turn_forces
-from risorius.layered.tissue import swelling_depth
 from risorius.mesh.factorisation import factorise
 
 __all__ = ["Correctives"]
@@ -22,8 +21,6 @@ _LENGTH = 5.0
 _HOLD_LIDS, _HOLD_STILL = 4.0, 50.0
 _ROUNDS = 2
 _LEAST_WEIGHT, _MOST_WEIGHT = 0.02, 5.0
-_PASSES, _SWELL_PASSES = 6, 3
-_MOST_IN, _MOST_OUT = -3.0, 7.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,19 +78,12 @@ class Correctives:
         hold = 1.0 + _HOLD_LIDS * skin.lids + _HOLD_STILL * (1.0 - skin.mobility)
         hold = skin.mass[active] * hold[active]
         matrix = csc_matrix(diags(hold) + length**2 * stiff)
-        faces = _faces_between(skin, active)
-        entries = (np.ones(faces.size), (faces.ravel(), np.repeat(np.arange(len(faces)), 3)))
-        around = csr_matrix(coo_matrix(entries, shape=(len(active), len(faces))))
-        average = csr_matrix(skin.average[active][:, active])
-        depth = (swelling_depth(skin, mechanics) * skin.mobility * skin.scale)[active]
         rest = np.ascontiguousarray(skin.positions[active])
-        area = around @ np.linalg.norm(_crosses(rest, faces), axis=1)
-        for _ in range(_PASSES):
-            area = average @ area
+        swelling = Swelling.build(skin, mechanics, active)
         return Correctives(
             skin, active, rest, edges.indptr.astype(np.int32), edges.indices.astype(np.int32),
-            length**2 * edges.data, hold, factorise(matrix), faces, around, average, depth,
-            area,
+            length**2 * edges.data, hold, factorise(matrix), swelling.faces, swelling.around,
+            swelling.average, swelling.depth, swelling.area,
         )  # fmt: skip
 
     def shape(self, linear: FloatArray) -> FloatArray:
@@ -121,18 +111,10 @@ class Correctives:
 
     def _swelling(self, positions: FloatArray) -> FloatArray:
         """Return how tissue that keeps its volume moves out where its area shrinks (m, 3)."""
-        cross = _crosses(positions, self.faces)
-        size = np.sqrt((cross * cross).sum(axis=1))
-        sums = self.around @ np.column_stack([cross, size])
-        for _ in range(_PASSES):
-            sums = self.average @ sums
-        ratio = np.clip(sums[:, 3] / np.maximum(self.area, 1e-9), 0.5, 1.6)
-        ratio[self.area <= 1e-9] = 1.0
-        scale = self.skin.scale
-        out = np.clip(self.depth * (1.0 / ratio - 1.0), _MOST_IN * scale, _MOST_OUT * scale)
-        for _ in range(_SWELL_PASSES):
-            out = self.average @ out
-        return out[:, None] * unit(sums[:, :3])
+        tissue = Swelling(
+            self.faces, self.around, self.average, self.depth, self.area, self.skin.scale
+        )
+        return tissue.out(positions)
 
 
 def _positive_edges(stiff: csr_matrix) -> csr_matrix:
@@ -145,26 +127,3 @@ def _positive_edges(stiff: csr_matrix) -> csr_matrix:
     edges.eliminate_zeros()
     edges.data = np.clip(edges.data, _LEAST_WEIGHT, _MOST_WEIGHT)
     return edges
-
-
-def _faces_between(skin: Skin, active: IntArray) -> IntArray:
-    """Return the faces (f, 3) whose corners are all active, numbered among these."""
-    local = np.full(len(skin.positions), -1, np.int32)
-    local[active] = np.arange(len(active))
-    faces = skin.mesh.faces
-    if skin.partner is not None:
-        # Together with the mirror image of the triangulation, so that sides are cut alike.
-        faces = np.concatenate([faces, skin.partner[faces[:, ::-1]]])
-    faces = local[faces]
-    return np.ascontiguousarray(faces[(faces >= 0).all(axis=1)])
-
-
-def _crosses(positions: FloatArray, faces: IntArray) -> FloatArray:
-    """Return a sixth of the cross product of two sides (f, 3): a third of each face's area."""
-    first, second, third = (positions[faces[:, corner]] for corner in range(3))
-    a, b = second - first, third - first
-    result = np.empty_like(a)
-    for axis in range(3):
-        i, j = (axis + 1) % 3, (axis + 2) % 3
-        result[:, axis] = (a[:, i] * b[:, j] - a[:, j] * b[:, i]) / 6.0
-    return result
