@@ -109,8 +109,19 @@ class Ground:
             face[missed], bary[missed] = near.faces, near.bary
         return SurfacePoints(face, bary), missed
 
-    def lay(self, points: FloatArray, *, closed: bool = False) -> ActionLine:
+    def lay(
+        self, points: FloatArray, *, closed: bool = False, name: str = "action line"
+    ) -> ActionLine:
         """Return the action line through `points`, its segments split over what lies between.
+
+        Parameters
+        ----------
+        points : (k, 3) float64
+            As drawn [mm].
+        closed : bool
+            Whether the last point is joined to the first.
+        name : str
+            What a refusal calls the line.
 
         Raises
         ------
@@ -121,6 +132,10 @@ class Ground:
         places = own.positions(self.mesh)
         gap = np.linalg.norm(np.diff(places, axis=0), axis=1)
         own = own.take(np.concatenate([[True], gap > _SAME]))
+        if len(own) < 2:
+            raise ShapeError(
+                f"{name}: {len(own)} distinct surface points are no line; draw at least two"
+            )
         rows = [own.take([0])]
         ends = [*range(1, len(own)), 0] if closed else [*range(1, len(own))]
         for end in ends:

@@ -11,6 +11,7 @@ from risorius._check import FloatArray, IntArray
 from risorius.anatomy.outwards import outwards, unit
 from risorius.anatomy.skull import Skull
 from risorius.anatomy.template import builtin_head
+from risorius.errors import ShapeError
 from risorius.layered.faithful.action_line import Ground
 from risorius.layered.faithful.muscle_mesh import MuscleMesh, box_mesh, ring_mesh
 from risorius.layered.faithful.parameters import FaithfulParameters
@@ -173,6 +174,13 @@ def lay_muscle(
     parameters : FaithfulParameters
     carry : callable, optional
         From the map's space (q, 3) to that of the anatomy (q, 3).
+
+    Raises
+    ------
+    ShapeError
+        If one of its lines is no line, or its contour is open or crosses itself.
+    MeshError
+        If it encloses nothing.
     """
     name = muscle.name + side
     names = [
@@ -191,20 +199,29 @@ def lay_muscle(
     rows = anatomy.rows_of(tuple(dict.fromkeys(names)))
     ground = Ground(anatomy.positions, anatomy.faces, rows, out, parameters)
     moved = carry or (lambda points: points)
-    shape = muscle.shape
-    if isinstance(shape, Ring):
-        centre = moved(np.asarray(shape.centre, np.float64)[None])[0]
-        lines = lay_ring(shape, centre, ground, sections=muscle.sections)
-        mesh = ring_mesh(lines.rows, lines.columns, parameters.ring)
-    else:
-        lines = lay_sheet(shape, moved(shape.line), ground, sections=muscle.sections)
-        mesh = box_mesh(lines.rows, lines.columns, parameters.sheet)
+    lines, mesh = _laid(muscle, name, ground, moved)
     places = muscle_places(anatomy, lines, rows, muscle.thickness)
     mesh = mesh.outwards(places, name=name)
     surface = anatomy.add(name, places, mesh.faces)
     laid = LaidMuscle(name, control, muscle, lines, mesh, surface)
     anatomy.muscles.append(laid)
     return laid
+
+
+def _laid(
+    muscle: Muscle, name: str, ground: Ground, carry: Callable[[FloatArray], FloatArray]
+) -> tuple[SheetLines | RingLines, MuscleMesh]:
+    """Return lines and mesh of a muscle; a refusal names it."""
+    shape, p = muscle.shape, ground.parameters
+    try:
+        if isinstance(shape, Ring):
+            centre = carry(np.asarray(shape.centre, np.float64)[None])[0]
+            ring = lay_ring(shape, centre, ground, sections=muscle.sections)
+            return ring, ring_mesh(ring.rows, ring.columns, p.ring)
+        sheet = lay_sheet(shape, carry(shape.line), ground, sections=muscle.sections)
+    except ShapeError as error:
+        raise ShapeError(f"muscle {name}: {error}") from error
+    return sheet, box_mesh(sheet.rows, sheet.columns, p.sheet)
 
 
 def muscle_places(

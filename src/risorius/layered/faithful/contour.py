@@ -44,6 +44,37 @@ class Contour:
                     f"{(number + 1) % 4}; the four lines must meet head to tail"
                 )
 
+    def require_simple(self, positions: FloatArray, faces: IntArray) -> None:
+        """Raise `ShapeError` if opposite lines cross, seen across their best plane (spec 6)."""
+        places = [line.places(positions, faces) for line in self.lines]
+        middle = np.concatenate(places).mean(axis=0)
+        across = np.linalg.svd(np.concatenate(places) - middle, full_matrices=False)[2][:2]
+        flat = [(row - middle) @ across.T for row in places]
+        for one, other in ((0, 2), (1, 3)):
+            found = _first_crossing(flat[one], flat[other])
+            if found is not None:
+                raise ShapeError(
+                    f"contour: segment {found[0]} of line {one} crosses segment {found[1]} of "
+                    f"line {other}; opposite sides of a muscle must not meet, draw it wider there "
+                    "or with a gentler bend"
+                )
+
+
+def _first_crossing(first: FloatArray, second: FloatArray) -> tuple[int, int] | None:
+    """Return the segments of two flat polylines (k, 2), (l, 2) that cross, None if none do."""
+    a, b = first[:-1, None], first[1:, None]
+    c, d = second[None, :-1], second[None, 1:]
+
+    def side(p: FloatArray, q: FloatArray, r: FloatArray) -> FloatArray:
+        u, v = q - p, r - p
+        return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+
+    crossing = (side(a, b, c) * side(a, b, d) < 0.0) & (side(c, d, a) * side(c, d, b) < 0.0)
+    if not crossing.any():
+        return None
+    i, j = np.argwhere(crossing)[0]
+    return int(i), int(j)
+
 
 def contour_vertices(rows: int, columns: int) -> tuple[IntArray, IntArray, IntArray, IntArray]:
     """Return the bottom vertices of the samples of A0 (h,), A1 (w,), A2 (h,) and A3 (w,).

@@ -131,15 +131,19 @@ def lay_sheet(
     Raises
     ------
     ShapeError
-        If a line has less than two distinct points, or the four sides do not meet.
+        If a line has less than two distinct points, the four sides do not meet, or two cross.
     """
     columns, rows = sections
     p: FaithfulParameters = ground.parameters
     across = unit(np.cross(unit(np.gradient(line, axis=0)), ground.out(line)))
     offsets = np.linspace(-1.0, 1.0, columns)
     drawn = line + offsets[:, None, None] * sheet.half_width[:, None] * across
-    sides = ground.lay(drawn[0]), ground.lay(drawn[-1]).reversed
-    insertion, origin = ground.lay(drawn[:, -1]), ground.lay(drawn[::-1, 0])
+    sides = (
+        ground.lay(drawn[0], name="first side"),
+        ground.lay(drawn[-1], name="second side").reversed,
+    )
+    insertion = ground.lay(drawn[:, -1], name="insertion")
+    origin = ground.lay(drawn[::-1, 0], name="origin")
     inner: dict[int, ActionLine] = {}
     if 2.0 * sheet.half_width.mean() > p.wide:
         starts, ends = (
@@ -148,13 +152,14 @@ def lay_sheet(
         )
         for c in range(1, columns - 1):
             points = np.concatenate([starts[[columns - 1 - c]], drawn[c, 1:-1], ends[[c]]])
-            inner[c] = ground.lay(points)
+            inner[c] = ground.lay(points, name=f"internal line {c}")
     places = np.linspace(0.0, len(line) - 1.0, rows)
     low = np.minimum(places.astype(int), len(line) - 2)
     share = (places - low)[:, None]
     grid = np.stack([(1.0 - share) * side[low] + share * side[low + 1] for side in drawn], axis=1)
     contour = Contour((sides[0], insertion, sides[1], origin))
     contour.require_closed(ground.positions, ground.faces)
+    contour.require_simple(ground.positions, ground.faces)
     return SheetLines(
         contour, inner, rows, columns, ground.out(grid.reshape(-1, 3)), p.largest_contraction
     )
