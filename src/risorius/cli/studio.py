@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
@@ -71,5 +72,6 @@ def studio(
             talk.say(f"studio of {project}: {where.link}")
             talk.say("Ctrl-C ends it; the work is kept")
 
-        serve(project, start, address=address, browser=not no_browser, ready=ready)
+        with suppress(KeyboardInterrupt):  # the usual way to end it
+            serve(project, start, address=address, browser=not no_browser, ready=ready)
         talk.put(project=project, link=address.link)
