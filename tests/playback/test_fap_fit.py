@@ -41,6 +41,8 @@ def test_parameters_that_muscles_make_come_back_within_a_unit(fit: FapFit) -> No
         weights = np.zeros(fit.matrix.shape[1])
         chosen = rng.choice(fit.basis, 6, replace=False)
         weights[chosen] = rng.uniform(0.0, 0.8, 6)
+        # No face moves a control both of its ways.
+        weights[fit.basis[fit.contraries[:, 1]]] = 0.0
         asked = fit.values(weights)
         again = fit.values(fit.weights(asked))
         worst.append(
@@ -48,6 +50,18 @@ def test_parameters_that_muscles_make_come_back_within_a_unit(fit: FapFit) -> No
         )
     assert max(worst) < 0.5
     assert np.median(worst) < 0.1
+
+
+def test_no_control_goes_both_of_its_ways_at_once(fit: FapFit) -> None:
+    names = played_rig().names
+    ends = {(names[fit.basis[a]], names[fit.basis[b]]) for a, b in fit.contraries}
+    assert ("jaw_pitch", "jaw_pitch_neg") in ends
+    assert ("gaze_yaw_l", "gaze_yaw_l_neg") in ends
+    rng = np.random.default_rng(11)
+    for _ in range(20):
+        asked = {f.target: float(rng.uniform(f.low, f.high)) for f in faps().values()}
+        weights = fit.weights(asked)[fit.basis]
+        assert not (weights[fit.contraries] > 0.0).all(axis=1).any()
 
 
 def test_the_answer_does_not_depend_on_earlier_frames(fit: FapFit) -> None:

@@ -7,6 +7,7 @@ from risorius.anatomy.template import builtin_head
 from risorius.controls.fap import faps
 from risorius.playback import FapReading
 from risorius.rig.bake import empty_rig
+from tests.face_fixtures import builtin_face
 
 HEAD = builtin_head()
 READING = FapReading.of_head(HEAD)
@@ -40,7 +41,8 @@ def test_lifting_the_whole_head_is_read_in_the_units_of_each_point() -> None:
 def test_reading_is_linear_for_points() -> None:
     rng = np.random.default_rng(0)
     a, b = rng.normal(size=(2, *HEAD.positions.shape))
-    points = [faps()[n].unit != "AU" for n in READING.numbers]
+    # Turns are not, nor is the centre of what turns.
+    points = [faps()[n].unit != "AU" and n not in (27, 28) for n in READING.numbers]
     summed = READING.values(a) + 2 * READING.values(b)
     assert np.allclose(READING.values(a + 2 * b)[points], summed[points])
 
@@ -67,3 +69,18 @@ def test_a_rig_reads_as_the_head_it_was_made_of() -> None:
     assert np.allclose(reading.unit, READING.unit)
     deltas = np.random.default_rng(1).normal(size=HEAD.positions.shape)
     assert np.allclose(reading.values(deltas), READING.values(deltas))
+
+
+def test_an_eyeball_that_turns_is_not_thrust_and_one_that_comes_out_is() -> None:
+    face = builtin_face()
+    reading = FapReading.of_head(face.head)
+    row, turn = reading.numbers.index(27), reading.numbers.index(23)
+    turned = face.displace({"gaze_yaw_l": 30.0, "gaze_pitch_l": -20.0})
+    thrust = reading.point_motion(turned)[row]
+    assert np.linalg.norm(thrust) < 0.3  # the cornea bends the sphere that is fitted a little
+    assert reading.values(turned)[turn] > 4e4
+    out = np.zeros_like(turned)
+    out[reading.eyes["3.5"]] = (0.0, 0.0, 2.0)
+    both = reading.point_motion(turned + out)[row]
+    np.testing.assert_allclose(both - thrust, (0, 0, 2), atol=0.2)
+    np.testing.assert_allclose(reading.point_motion(out)[row], (0, 0, 2), atol=1e-9)

@@ -45,6 +45,8 @@ class FapFit:
         Targets that the fit uses.
     low, high : (b,) float64
         Bounds of their weights.
+    contraries : (c, 2) int
+        Places in the basis of the two ends of a control.
     """
 
     reading: FapReading
@@ -52,6 +54,7 @@ class FapFit:
     basis: npt.NDArray[np.intp]
     low: FloatArray
     high: FloatArray
+    contraries: npt.NDArray[np.intp]
     _systems: dict[tuple[int, ...], tuple[FloatArray, FloatArray]] = field(
         default_factory=dict[tuple[int, ...], tuple[FloatArray, FloatArray]], repr=False
     )
@@ -82,7 +85,10 @@ class FapFit:
             if number is not None and number in reading.numbers:
                 gain = matrix[reading.numbers.index(number), column]
                 low[place], high[place] = _fap_bounds(number, float(gain), name, rig)
-        return FapFit(reading, matrix, basis, low, high)
+        place = {rig.names[column]: row for row, column in enumerate(basis)}
+        ends = [(place[n], place[f"{n}_neg"]) for n in place if f"{n}_neg" in place]
+        contraries = np.array(ends, np.intp).reshape(-1, 2)
+        return FapFit(reading, matrix, basis, low, high, contraries)
 
     def values(self, weights: FloatArray) -> dict[str, float]:
         """Return the parameters [FAPU] that the weights (t,) of all targets make."""
@@ -99,8 +105,24 @@ class FapFit:
         gram, scaled = self._system(present)
         wanted = np.array([values[fap_name(numbers[row])] for row in present])
         linear = scaled.T @ (wanted * self._scale[list(present)])
-        result[self.basis] = fit_bounded(gram, linear, low=self.low, high=self.high)
+        result[self.basis] = self._without_contraries(gram, linear)
         return result
+
+    def _without_contraries(self, gram: FloatArray, linear: FloatArray) -> FloatArray:
+        """Return the best weights (b,) in which no control goes both of its ways at once.
+
+        Where the free answer has both ends of a control, the smaller one is let go and the rest is
+        fitted again; every round lets go of more, so that there is an end.
+        """
+        high = self.high.copy()
+        while True:
+            found = fit_bounded(gram, linear, low=self.low, high=high)
+            up, down = self.contraries[:, 0], self.contraries[:, 1]
+            both = (found[up] > 0.0) & (found[down] > 0.0)
+            if not both.any():
+                return found
+            smaller = np.where(found[up] < found[down], up, down)[both]
+            high[smaller] = 0.0
 
     @property
     def _scale(self) -> FloatArray:

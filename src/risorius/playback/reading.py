@@ -29,6 +29,7 @@ DIRECTIONS: Mapping[str, tuple[float, float, float]] = {
 
 _EYES = {"3.5": "eye_left", "3.6": "eye_right"}
 _PARTS = (*_EYES.values(), *TONGUE_PARTS)
+_THRUSTS = (27, 28)
 _FEWEST = 12  # vertices by which an eye's turn can be told
 _WHY_NOT = {
     "grow": "pupils are painted, not moved",
@@ -151,8 +152,8 @@ class FapReading:
         """Return how each parameter's point moves (k, 3) [mm] under `deltas` (n, 3) [mm]."""
         moved = np.einsum("kc,kcx->kx", self.shares, deltas[self.vertices])
         for row, number in enumerate(self.numbers):
-            if number in (27, 28):  # an eyeball's thrust is that of its whole, not of its pupil
-                moved[row] = deltas[self.eyes[faps()[number].point]].mean(axis=0)
+            if number in _THRUSTS:  # of the eyeball's centre, which stays where it only turns
+                moved[row] = self._thrust(self.eyes[faps()[number].point], deltas)
         return moved
 
     def values(self, deltas: FloatArray) -> FloatArray:
@@ -167,16 +168,35 @@ class FapReading:
                 result[row] = turns[fap.point][1] / self.unit[row]
         return result
 
-    def _turn(self, rows: npt.NDArray[np.intp], deltas: FloatArray) -> tuple[float, float]:
-        """Return how far an eye turns left and down [rad], by the best rotation (Kabsch 1976)."""
+    def _thrust(self, rows: npt.NDArray[np.intp], deltas: FloatArray) -> FloatArray:
+        """Return how far the centre of an eyeball goes (3,) [mm], whatever it turns by."""
+        rest = self.positions[rows]
+        away = rest.mean(axis=0) - _centre(rest)
+        turned = self._rotation(rows, deltas) @ away
+        return deltas[rows].mean(axis=0) - (turned - away)
+
+    def _rotation(self, rows: npt.NDArray[np.intp], deltas: FloatArray) -> FloatArray:
+        """Return the rotation (3, 3) that is nearest to an eye's motion (Kabsch 1976)."""
         if not deltas[rows].any():
-            return 0.0, 0.0
+            return np.eye(3)
         rest = self.positions[rows]
         posed = rest + deltas[rows]
         u, _, vt = np.linalg.svd((rest - rest.mean(axis=0)).T @ (posed - posed.mean(axis=0)))
         keep = np.array([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
-        gaze = (vt.T * keep) @ u.T @ np.array([0.0, 0.0, 1.0])
+        return (vt.T * keep) @ u.T
+
+    def _turn(self, rows: npt.NDArray[np.intp], deltas: FloatArray) -> tuple[float, float]:
+        """Return how far an eye turns left and down [rad]."""
+        gaze = self._rotation(rows, deltas) @ np.array([0.0, 0.0, 1.0])
         return float(np.arctan2(gaze[0], gaze[2])), -float(np.arcsin(np.clip(gaze[1], -1.0, 1.0)))
+
+
+def _centre(points: FloatArray) -> FloatArray:
+    """Return the centre (3,) of the sphere that is nearest to points (n, 3): |p|^2 = 2 c.p + k."""
+    middle = points.mean(axis=0)
+    near = points - middle
+    table = np.column_stack([2.0 * near, np.ones(len(near))])
+    return middle + np.linalg.lstsq(table, (near**2).sum(axis=1), rcond=None)[0][:3]
 
 
 def _why_not(
