@@ -107,6 +107,6 @@ def finite_number(value: object, where: str) -> float:
     """Return `value` as float if it is a number (infinite ones are no JSON)."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise FormatError(f"{where}: expected a number")
-    if abs(value) > LARGEST:
+    if not abs(value) <= LARGEST:  # NaN, too
         raise FormatError(f"{where}: must lie within {LARGEST:g}")
     return float(value)
