@@ -119,7 +119,11 @@ def test_a_finer_head_gets_smooth_motion_and_keeps_its_own_shape() -> None:
         # A lid's margin is traced along other edges on the finer mesh, so that it closes a little
         # differently.
         limit = 8.0 if name == "blink" else 3.0
-        assert motion_error(wanted[skin], moved[skin]) < limit
+        if name == "look":
+            # Only the sockets move, by fractions of a millimetre.
+            assert np.abs(wanted[skin] - moved[skin]).max() < 2e-4 * head.height
+        else:
+            assert motion_error(wanted[skin], moved[skin]) < limit
 
 
 def test_a_shape_without_motion_stays_without() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from risorius._check import BoolArray, FloatArray
+from risorius.cloning.fine_field import FineField, fading
 from risorius.cloning.landmark_pairs import LandmarkPairs
 from risorius.cloning.lid_trace import LidPair, trusted_lids
 from risorius.cloning.mapping import Mapping, map_skin
@@ -98,7 +99,10 @@ def correspond(
     if parameters.local_scale > 0.0:
         change = fit.warp.jacobian(rest.positions) - np.eye(3)
         linear = (np.eye(3) + parameters.local_scale * change) @ linear
-    carry = _Improved(mapping, matrix, linear, rest, target.mesh.positions, parameters)
+    fine = FineField.of(source, target, found.mesh) if parameters.curved else None
+    carry = _Improved(
+        mapping, matrix, linear, rest, target.mesh.positions, parameters, target.inside, fine
+    )
     lids = trusted_lids(source, target, found.mesh.positions, fit.lines)
     notes = [
         f"{_EYES[side]} eye: its landmarks do not fit the others; the lids are matched by the skin"
@@ -173,12 +177,17 @@ class _Improved:
     rest: TriMesh
     target: FloatArray
     parameters: CloneParameters
+    inside: BoolArray
+    fine: FineField | None
 
     def __call__(self, deltas: FloatArray) -> FloatArray:
         moves = _moves(deltas, self.parameters)
         kept = np.where(moves[:, None], deltas, 0.0)
         turned = np.einsum("vij,vj->vi", self.linear, kept)
         result = self.matrix @ turned
+        if self.fine is not None:
+            fade = fading(self.mapping, moves, self.inside)
+            result = self.fine.rounded(result, turned) * fade[:, None]
         if self.parameters.form == "absolute":
             places = _at(self.mapping, self.rest.positions)
             result = result + (places - self.target) * ~self.mapping.unmapped[:, None]

@@ -6,7 +6,7 @@ import numpy as np
 
 from risorius._check import FloatArray, IntArray
 from risorius.cloning.local_field import LocalField
-from risorius.cloning.polyline import interpolated, shares
+from risorius.cloning.polyline import arched, interpolated, shares
 from risorius.cloning.subject import Subject
 
 __all__ = ["LipContact"]
@@ -78,7 +78,7 @@ class LipContact:
         for number, (line, place) in enumerate(zip(self._target, self._places)):
             sign = 1.0 if number == 0 else -1.0
             moved = [
-                interpolated(ours[own], own_place, place)
+                arched(ours[own], own_place, place)
                 for own, own_place in zip(self._source, self._source_places)
             ]
             made = [

@@ -5,16 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix, diags, eye
+from scipy.sparse import csr_matrix, eye
 
 from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.smooth_step import smooth_step
+from risorius.cloning.evening import evening
 from risorius.cloning.mouth_corners import CornerPlaces, MouthCorners
+from risorius.cloning.seam_zones import seam_zones
 from risorius.cloning.subject import Subject
 from risorius.mesh.connectivity import edges
 from risorius.mesh.core import TriMesh
-from risorius.mesh.factorisation import factorise
-from risorius.mesh.laplacian import SmoothField, uniform_laplacian
+from risorius.mesh.laplacian import SmoothField
 from risorius.mesh.normals import vertex_normals
 from risorius.spatial.closest import ClosestPoints, closest_points
 
@@ -24,6 +25,8 @@ __all__ = ["Mapping", "identity_filling", "map_skin"]
 # shares of the face's height: a bust may reach farther down than the source's neck.
 _NEAR, _FAR = 0.05, 0.12
 _TURNED = 75.0
+# Neighbours that count for less do not set a vertex in motion.
+_COUNTS = 0.02
 # Barycentric shares below this are rounding.
 _ROUNDING = 1e-9
 # Over what distance places are evened out: at least the first [mm], or a share of the source's
@@ -65,7 +68,11 @@ class Mapping:
     def moved(self, moves: BoolArray) -> BoolArray:
         """Return (n,) whether any corner moves, for a mask (v,) of moving source vertices."""
         taken = np.asarray(moves[self.faces].any(axis=1)) & ~self.unmapped
-        return np.asarray(self.filling @ taken.astype(np.float64) > 0.0)
+        return np.asarray(np.abs(self.filling) @ taken.astype(np.float64) > _COUNTS)
+
+    def moving_share(self, moves: BoolArray) -> FloatArray:
+        """Return (n,) the share of each place that lies at moving corners, for a mask (v,)."""
+        return np.einsum("nc,nc->n", self.bary, moves[self.faces].astype(np.float64))
 
     def matrix(self, rest: TriMesh, *, curved: bool) -> csr_matrix:
         """Return the (n, v) matrix from source displacements to those of the target.
@@ -142,8 +149,9 @@ def map_skin(
     final = _without_rounding(final)
     corners = rest.faces[final.face]
     offset = final.places[:, None] - rest.positions[corners]
-    torn = corners_of_mouth.torn(rest, mesh, corners, final.bary)
-    return Mapping(corners, final.bary, found.distance, fade, offset, _filled(mesh, torn))
+    zones = seam_zones(source, target, rest)
+    filling = evening(zones, rest, mesh, corners, final.bary)
+    return Mapping(corners, final.bary, found.distance, fade, offset, filling)
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,24 +229,6 @@ def _groups(source: Subject, target: Subject) -> list[tuple[IntArray, BoolArray,
 def identity_filling(vertex_count: int) -> csr_matrix:
     """Return the filling (n, n) of a mapping without doubtful vertices."""
     return csr_matrix(eye(vertex_count))
-
-
-def _filled(mesh: TriMesh, doubtful: IntArray) -> csr_matrix:
-    """Return the (n, n) matrix that fills `doubtful` vertices harmonically from the others."""
-    n = mesh.vertex_count
-    keep = np.ones(n, bool)
-    keep[doubtful] = False
-    identity = diags(keep.astype(np.float64))
-    if not len(doubtful):
-        return csr_matrix(identity)
-    stiff = uniform_laplacian(mesh.faces, n)[doubtful]
-    inner = csc_matrix(stiff[:, doubtful] + 1e-9 * eye(len(doubtful)))
-    share = -factorise(inner)(np.asarray(stiff[:, keep].todense(), np.float64))
-    rows, columns = np.nonzero(np.abs(share) > 1e-9)
-    spread = csr_matrix(
-        (share[rows, columns], (doubtful[rows], np.flatnonzero(keep)[columns])), shape=(n, n)
-    )
-    return csr_matrix(identity + spread)
 
 
 def _gradients(mesh: TriMesh) -> list[csr_matrix]:

@@ -9,16 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from risorius._check import FloatArray, IntArray
 from risorius.cloning.polyline import line_trust
 from risorius.cloning.subject import Subject
-from risorius.mesh.connectivity import edges
 from risorius.mesh.core import TriMesh
 from risorius.mesh.normals import vertex_normals
-from risorius.mesh.slit import edge_graph
 from risorius.spatial.triangles import closest_bary
 
 __all__ = ["CornerPlaces", "MouthCorners"]
@@ -29,9 +26,6 @@ _ZONE, _SOURCE_ZONE = 0.16, 0.3
 _SKIN = 0.7
 # What a unit of difference between the normals counts for [mm].
 _TURN = 1.5
-# The places of two joined vertices are torn apart if the way between them along the source's
-# skin is longer than this many times their edge, and by more than the second number [mm].
-_TORN, _TORN_LEAST = 1.8, 0.45
 # Faces with the nearest middles that are compared, and query points at a time.
 _CANDIDATES, _BLOCK = 96, 512
 
@@ -132,46 +126,6 @@ class MouthCorners:
             distance[rows], places[rows] = apart[at], there[at]
         face = self.faces[best] if f else best
         return self.vertices, CornerPlaces(face, bary, distance, places)
-
-    def torn(self, rest: TriMesh, mesh: TriMesh, corners: IntArray, bary: FloatArray) -> IntArray:
-        """Return the target vertices (k,) whose places have lost those of their neighbours.
-
-        Parameters
-        ----------
-        rest : TriMesh
-            The source at rest.
-        mesh : TriMesh
-            The target.
-        corners : (n, 3) int32
-            Source vertices around the place of each target vertex.
-        bary : (n, 3) float64
-        """
-        if not len(self.vertices):
-            return self.vertices
-        inside = np.zeros(mesh.vertex_count, bool)
-        inside[self.vertices] = True
-        pairs = edges(mesh.faces)
-        pairs = pairs[inside[pairs].all(axis=1)]
-        used = np.unique(rest.faces[self.faces])
-        row = np.full(rest.vertex_count, -1)
-        row[used] = np.arange(len(used))
-        graph = edge_graph(rest)[used][:, used]
-        length = np.linalg.norm(mesh.positions[pairs[:, 0]] - mesh.positions[pairs[:, 1]], axis=1)
-        limit = _TORN * float(length.max(initial=0.0)) + 4.0 * _TORN_LEAST
-        ways = dijkstra(graph, indices=np.arange(len(used)), limit=limit)
-        places = np.einsum("nc,ncj->nj", bary, rest.positions[corners])
-        first, second = pairs.T
-        ends = [
-            np.linalg.norm(places[v][:, None] - rest.positions[corners[v]], axis=2)
-            for v in (first, second)
-        ]
-        between = ways[row[corners[first]][:, :, None], row[corners[second]][:, None, :]]
-        way = (ends[0][:, :, None] + between + ends[1][:, None, :]).min(axis=(1, 2))
-        straight = np.linalg.norm(places[first] - places[second], axis=1)
-        same = (corners[first][:, :, None] == corners[second][:, None, :]).any(axis=(1, 2))
-        way = np.where(same, straight, way)
-        bad = (way > _TORN * length) & (way > length + _TORN_LEAST)
-        return np.unique(pairs[bad]).astype(np.int32)
 
 
 def _signature(subject: Subject) -> FloatArray:

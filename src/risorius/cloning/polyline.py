@@ -10,13 +10,19 @@ from scipy.spatial import cKDTree
 from risorius._check import FloatArray, IntArray
 
 __all__ = [
+    "arched",
     "at_shares",
     "interpolated",
     "line_trust",
     "nearest_on_line",
     "nearest_on_segments",
+    "place_on_line",
     "shares",
 ]
+
+# Lines with at least so many vertices show the shape of an open mouth by themselves. Vertices
+# within this share of the ends belong to the corners.
+_MANY, _CORNERS = 12, 0.05
 
 
 def shares(points: FloatArray) -> FloatArray:
@@ -36,6 +42,32 @@ def interpolated(values: FloatArray, place: FloatArray, wanted: FloatArray) -> F
     return np.stack([np.interp(wanted, place, column) for column in values.T], axis=1)
 
 
+def arched(values: FloatArray, place: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Return motion `values` (k, d) of a contact line at shares `wanted` (q,) of its length.
+
+    An open mouth is an ellipse: what the line moves beyond its corners is taken to be
+    sqrt(s (1 - s)) times something even, which is interpolated instead. On lines of many vertices
+    that is no different from `interpolated`, which is used for them.
+
+    Parameters
+    ----------
+    values : (k, d) float64
+        From corner to corner [mm].
+    place : (k,) float64
+        Shares of the line's vertices.
+    wanted : (q,) float64
+    """
+    inner = (place > _CORNERS) & (place < 1.0 - _CORNERS)
+    if len(place) >= _MANY or not inner.any():
+        return interpolated(values, place, wanted)
+    between = values[-1] - values[0]
+    beyond = values[inner] - values[0] - place[inner, None] * between
+    even = beyond / np.sqrt(place * (1.0 - place))[inner, None]
+    arch = np.sqrt(np.maximum(wanted * (1.0 - wanted), 0.0))[:, None]
+    rise = arch * interpolated(even, place[inner], wanted)
+    return values[0] + wanted[:, None] * between + rise
+
+
 def line_trust(ours: Sequence[IntArray], theirs: Sequence[IntArray]) -> float:
     """Return how far the motion of our lines can correct that of theirs, 0 to 1.
 
@@ -47,12 +79,37 @@ def line_trust(ours: Sequence[IntArray], theirs: Sequence[IntArray]) -> float:
 
 def nearest_on_line(points: FloatArray, line: FloatArray) -> FloatArray:
     """Return the points (q, 3) of the polyline `line` (k, 3) nearest to `points` (q, 3) [mm]."""
+    start, along, _ = place_on_line(points, line)
+    return line[start] + along[:, None] * (line[start + 1] - line[start])
+
+
+def place_on_line(points: FloatArray, line: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Return where on a polyline points lie nearest.
+
+    Parameters
+    ----------
+    points : (q, 3) float64
+        [mm].
+    line : (k, 3) float64
+        [mm].
+
+    Returns
+    -------
+    start : (q,) int
+        Vertex of the line before the place.
+    along : (q,) float64
+        Share of the way to the next vertex.
+    distance : (q,) float64
+        [mm].
+    """
     start, step = line[:-1], np.diff(line, axis=0)
     square = np.maximum(np.einsum("kj,kj->k", step, step), 1e-300)
     along = np.einsum("qkj,kj->qk", points[:, None] - start, step) / square
-    places = start + np.clip(along, 0.0, 1.0)[..., None] * step
-    best = np.linalg.norm(places - points[:, None], axis=2).argmin(axis=1)
-    return places[np.arange(len(points)), best]
+    along = np.clip(along, 0.0, 1.0)
+    distance = np.linalg.norm(start + along[..., None] * step - points[:, None], axis=2)
+    best = distance.argmin(axis=1)
+    at = (np.arange(len(points)), best)
+    return best.astype(np.int32), along[at], distance[at]
 
 
 def nearest_on_segments(points: FloatArray, positions: FloatArray, edges: IntArray) -> FloatArray:

@@ -112,6 +112,8 @@ class Subject:
         near = np.minimum(to_upper, to_lower) < _LIP_REACH * self.lips.width
         result[near & (to_upper < _CLEAR * to_lower)] = 1
         result[near & (to_lower < _CLEAR * to_upper)] = -1
+        # On coarse meshes a corner may lie nearer to one line's first vertex; it belongs to both.
+        result[list(self.lips.slit.corners)] = 0
         return result
 
     @cached_property
