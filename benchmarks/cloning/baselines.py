@@ -7,15 +7,21 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csc_matrix, diags
+from scipy.sparse import csc_matrix, csr_matrix, diags, eye
 from scipy.spatial import cKDTree
 
 from risorius.cloning import CloneParameters, Cloning
 from risorius.head import Head
 from risorius.mesh.factorisation import factorise
-from risorius.mesh.laplacian import cotangent_laplacian
+from risorius.mesh.normals import face_normals
+from risorius.spatial.closest import closest_points
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int32]
+
+# Displacements below this are rest [mm]; the smallest share of stiffness that keeps pieces
+# without an anchor solvable.
+_STILL, _LOOSE = 1e-4, 1e-9
 
 
 def nearest_copy(source: Head, target: Head, deltas: FloatArray) -> FloatArray:
@@ -31,37 +37,70 @@ def nearest_copy(source: Head, target: Head, deltas: FloatArray) -> FloatArray:
 def deformation_transfer(source: Head, target: Head, deltas: FloatArray) -> FloatArray:
     """Sumner, Popovic 2004, on the correspondence of the package, anchored where nothing moves.
 
-    The gradient of each target triangle's motion is that of the source triangle under it; the
-    Poisson system is solved for the displacements.
+    Every target triangle takes over the deformation gradient S of the source triangle under its
+    middle; vertices solve the least squares problem sum_t area_t |T_t - S_t|^2 with T_t the
+    gradient of the target's own motion (their equation 8 with the fourth vertex eliminated, whose
+    normal equations are G^T A G u = G^T A (S - I) with the gradient operator G). One operator is
+    both in the matrix and on the right, so that a motion that is a gradient is reproduced exactly.
+    Per shape, vertices whose source does not move are anchors.
     """
     bound = _bound(source, target)
-    rest, mesh = bound.source.mesh, bound.target.mesh
-    ours = _skin(source, deltas) @ bound.skin.pairs.similarity.linear.T
-    points = bound.skin.pairs.similarity.apply(rest.positions)
-    mapping = bound.skin.mapping
-    # The source face of a target face: that under the corner with the largest share.
-    owner = {tuple(sorted(face)): row for row, face in enumerate(rest.faces.tolist())}
-    faces = np.array([owner[tuple(sorted(face))] for face in mapping.faces.tolist()])
-    corner_face = faces[mesh.faces[:, 0]]
-    moves = np.linalg.norm(ours, axis=2) > 1e-4
-    still = ~moves.any(axis=0)[mapping.faces].any(axis=1)
-    still[np.argmin(mesh.positions[:, 2])] = True
-    free = np.flatnonzero(~still)
-    stiff = cotangent_laplacian(mesh.positions, mesh.faces)
-    solve = factorise(csc_matrix(stiff[free][:, free] + 1e-9 * diags(np.ones(len(free)))))
-    weights, edges = _cotangents(mesh.positions, mesh.faces)
+    mesh, mapping = bound.target.mesh, bound.skin.mapping
+    similarity = bound.skin.pairs.similarity
+    ours = _skin(source, deltas) @ similarity.linear.T
+    points = similarity.apply(bound.source.mesh.positions)
+    owner = _under_middles(mesh.faces, mesh.positions, bound)
+    inverse = np.linalg.pinv(_frames(points[bound.source.mesh.faces]))
+    gradient, areas = _gradient(mesh.positions, mesh.faces)
+    weighted = csr_matrix(gradient.T @ diags(np.repeat(areas, 3)))
+    stiff = csr_matrix(weighted @ gradient)
     made = np.zeros((len(ours), mesh.vertex_count, 3))
-    inverse = np.linalg.pinv(_frames(points[rest.faces]))
     for shape, moved in enumerate(ours):
-        change = _frames((points + moved)[rest.faces]) @ inverse - np.eye(3)
-        right = np.zeros((mesh.vertex_count, 3))
-        for (a, b), weight in zip(edges, weights):
-            span = mesh.positions[b] - mesh.positions[a]
-            pull = weight[:, None] * np.einsum("tij,tj->ti", change[corner_face], span)
-            np.add.at(right, b, pull)
-            np.add.at(right, a, -pull)
-        made[shape][free] = solve(right[free])
+        moves = np.linalg.norm(moved, axis=1) > _STILL
+        free = np.flatnonzero(mapping.moved(moves))
+        if not len(free):
+            continue
+        after = _frames((points + moved)[bound.source.mesh.faces])
+        change = (after @ inverse - np.eye(3))[owner]
+        right = weighted @ np.swapaxes(change, 1, 2).reshape(-1, 3)
+        loose = _LOOSE * float(stiff.diagonal().mean()) * eye(len(free))
+        made[shape, free] = factorise(csc_matrix(stiff[free][:, free] + loose))(right[free])
     return _spread(target, made)
+
+
+def _under_middles(faces: IntArray, positions: FloatArray, bound: Cloning) -> IntArray:
+    """Return the source face (m,) under each target triangle's middle, on its side of the lips."""
+    fitted, source, target = bound.skin.fitted, bound.source, bound.target
+    middles, normals = positions[faces].mean(axis=1), face_normals(positions, faces)
+    result = np.zeros(len(faces), np.int32)
+    for side in (0, 1, -1):
+        rows = np.flatnonzero(target.face_side == side)
+        mask = source.face_side * side >= 0
+        if len(rows):
+            found = closest_points(
+                fitted, middles[rows], normals=normals[rows], max_angle=75.0, face_mask=mask
+            )
+            lost = found.face < 0
+            result[rows] = found.face
+            if lost.any():
+                result[rows[lost]] = closest_points(
+                    fitted, middles[rows[lost]], face_mask=mask
+                ).face
+    return result
+
+
+def _gradient(positions: FloatArray, faces: IntArray) -> tuple[csr_matrix, FloatArray]:
+    """Return the gradient operator (3 m, n) of the triangles along themselves, and areas (m,)."""
+    corners = positions[faces]
+    facing = corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]]
+    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    square = np.maximum((doubled**2).sum(axis=1), 1e-16)
+    slopes = np.cross(doubled[:, None], facing) / square[:, None, None]
+    m = len(faces)
+    rows = np.repeat(3 * np.arange(m), 9) + np.tile(np.repeat(np.arange(3), 3), m)
+    columns = np.repeat(faces, 3, axis=0).ravel()
+    values = np.swapaxes(slopes, 1, 2).ravel()
+    return csr_matrix((values, (rows, columns)), (3 * m, len(positions))), 0.5 * np.sqrt(square)
 
 
 def _bound(source: Head, target: Head) -> Cloning:
@@ -85,16 +124,3 @@ def _frames(corners: FloatArray) -> FloatArray:
     normal = np.cross(a, b)
     length = np.sqrt(np.maximum(np.linalg.norm(normal, axis=1), 1e-30))
     return np.stack([a, b, normal / length[:, None]], axis=2)
-
-
-def _cotangents(
-    positions: FloatArray, faces: npt.NDArray[np.int32]
-) -> tuple[list[FloatArray], list[tuple[FloatArray, FloatArray]]]:
-    weights, edges = [], []
-    for k in range(3):
-        a, b, o = faces[:, k], faces[:, (k + 1) % 3], faces[:, (k + 2) % 3]
-        u, v = positions[a] - positions[o], positions[b] - positions[o]
-        area = np.maximum(np.linalg.norm(np.cross(u, v), axis=1), 1e-12)
-        weights.append(np.clip(0.5 * (u * v).sum(axis=1) / area, 0.02, 10.0))
-        edges.append((a, b))
-    return weights, edges
