@@ -11,6 +11,7 @@ from risorius._check import FloatArray
 from risorius.anatomy.skull_fit import MIRROR
 from risorius.anatomy.template import builtin_head
 from risorius.errors import ParameterError
+from risorius.mesh.boundary import boundary_loops
 from risorius.rig.face import Face
 from risorius.solvers.leapfrog import LeapfrogParameters, forces_at, settle
 from risorius.solvers.springs import SpringControl, SpringState
@@ -122,6 +123,9 @@ def test_the_back_of_the_head_never_moves() -> None:
     still = face.springs.network.fixed
     assert still.sum() > 500
     assert (moved[still] == 0.0).all()
+    mesh = face.head.skin.mesh
+    lowest = min(boundary_loops(mesh.faces), key=lambda rim: mesh.positions[rim, 1].mean())
+    assert still[lowest].all()
 
 
 def test_a_start_that_is_guessed_is_nearer_and_needs_fewer_steps() -> None:
@@ -172,6 +176,41 @@ def test_mirrored_partners_keep_the_skin_from_swinging_round_its_feet() -> None:
         control = replace(face.driver.drive({}).control, load=network.load + pull)
         below[mirrors] = _below(face, control)
     assert below[True] < 0.7 * below[False]
+
+
+def test_bone_and_teeth_take_their_share_of_what_goes_inwards_and_of_nothing_else() -> None:
+    springs = smiling().springs
+    moved = np.random.default_rng(5).normal(size=springs.outwards.shape)
+    along = np.einsum("nd,nd->n", moved, springs.outwards)
+    kept = springs.supported(moved, 0.4)
+    expected = np.where(along < 0.0, 0.6 * along, along)
+    assert np.allclose(np.einsum("nd,nd->n", kept, springs.outwards), expected)
+    across = moved - along[:, None] * springs.outwards
+    assert np.allclose(kept - expected[:, None] * springs.outwards, across)
+    assert (kept[along >= 0.0] == moved[along >= 0.0]).all()
+    assert (springs.supported(np.zeros_like(moved), 0.4) == 0.0).all()
+    front = springs.skin.mouth.distance < 20.0
+    assert (springs.outwards[front, 2] > 0.5).all()
+
+
+def test_tissue_swells_where_it_is_pushed_together_and_not_at_the_lids() -> None:
+    face = smiling()
+    volume, skin = face.volume, face.springs.skin
+    assert volume is not None
+    assert (volume.swollen(np.zeros_like(skin.positions)) == 0.0).all()
+    cheek = builtin_head().landmarks.position("2.4") + [12.0, 22.0, -12.0]
+    offset = skin.positions - cheek
+    near = np.exp(-((np.linalg.norm(offset, axis=1) / 14.0) ** 2))[:, None]
+    middle = int(np.argmin(np.linalg.norm(offset, axis=1) + 1e3 * skin.hidden))
+    for amount, sign in ((-0.25, 1.0), (0.25, -1.0)):
+        moved = amount * near * offset
+        out = (volume.swollen(moved) - moved) @ skin.normals[middle]
+        assert sign * out[middle] > 0.3
+    margins = builtin_mechanics().margins["l"]
+    lid = (margins.distance < 0.4 * margins.height) & ~skin.hidden
+    assert lid.any()
+    pressed = 0.3 * (skin.positions.mean(axis=0) - skin.positions)
+    assert (volume.swollen(pressed)[lid] == pressed[lid]).all()
 
 
 def test_poses_that_cannot_be_are_refused() -> None:

@@ -59,6 +59,15 @@ def test_published_springs_return_within_the_tolerance() -> None:
     assert left.max() < 5.0
 
 
+def test_the_first_step_is_most_of_the_way() -> None:
+    # The over-relaxation takes the skin along before any spring pulls.
+    face, session = smiling(), smiling().live()
+    session.set(SMILE)
+    expected = face.pose(SMILE)
+    way = np.linalg.norm(expected - face.head.positions)
+    assert np.linalg.norm(session.step(steps=1) - expected) < 0.2 * way
+
+
 def test_the_same_frames_give_the_same_bytes() -> None:
     results = []
     for _ in range(2):

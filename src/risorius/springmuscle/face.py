@@ -30,6 +30,7 @@ from risorius.springmuscle.recipe import OutlineRecipe
 from risorius.springmuscle.recipe_file import default_recipe
 from risorius.springmuscle.relax import start_of
 from risorius.springmuscle.skin import SkinSprings, build_springs
+from risorius.springmuscle.volume import Volume
 
 __all__ = ["SpringFace"]
 
@@ -48,6 +49,8 @@ class SpringFace:
     driver : Driver
         From controls to what the springs feel.
     contact : Contact or None
+    volume : Volume or None
+        What tissue does that is pushed together.
     controls : tuple of Control
     parameters : SpringParameters
     notes : tuple of str
@@ -60,6 +63,7 @@ class SpringFace:
     springs: SkinSprings
     driver: Driver
     contact: Contact | None
+    volume: Volume | None
     controls: tuple[Control, ...]
     parameters: SpringParameters
     notes: tuple[str, ...] = ()
@@ -149,9 +153,12 @@ class SpringFace:
         contraction = Contraction(muscles) if p.linked else Contraction(muscles, sweeps=0)
         driver = Driver(springs, contraction, moving, p)
         contact = Contact.build(skin, moving) if p.contact else None
+        volume = None
+        if p.volume:
+            volume = Volume.build(skin, moving, springs.network.fixed, p.volume)
         controls = muscles.controls + moving.controls
         face = SpringFace(
-            head, moving, muscles, springs, driver, contact, controls, p, moving.notes
+            head, moving, muscles, springs, driver, contact, volume, controls, p, moving.notes
         )
         return face.with_fields() if p.riding else face
 
@@ -226,11 +233,13 @@ class SpringFace:
     def spread(self, skin: FloatArray, values: Mapping[str, float]) -> FloatArray:
         """Return the displacement (n, 3) of all input vertices from the skin's (w, 3) [mm].
 
-        Bone and teeth take their part of what goes inwards; jaw, lids and all other parts follow,
-        then contact.
+        Bone and teeth take their part of what goes inwards, tissue swells; jaw, lids and all other
+        parts follow, then contact.
         """
         part = self.head.skin
         skin = self.springs.supported(skin, self.parameters.support)
+        if self.volume is not None:
+            skin = self.volume.swollen(skin)
         if self.parameters.carried:
             result = self.mechanics.pose(skin, values)
         else:

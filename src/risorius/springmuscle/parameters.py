@@ -86,6 +86,8 @@ class SpringParameters:
         Average with the mirrored pose on a symmetric head.
     support : float
         Share of the inward motion that bone and teeth take away.
+    volume : float
+        How much of its volume tissue keeps where it is pushed together.
     contact : bool
         Keep the skin off teeth and eyeballs and the lips off each other.
     relaxation : int
@@ -121,6 +123,7 @@ class SpringParameters:
     masses: Masses = "unit"
     even: bool = False
     support: float = 0.0
+    volume: float = 0.0
     contact: bool = False
     relaxation: int = 10
     motion: LeapfrogParameters = _PUBLISHED_MOTION
@@ -136,6 +139,7 @@ class SpringParameters:
         ):  # fmt: skip
             as_number(name, getattr(self, name), low=0.0)
         as_number("resting", self.resting, low=0.0, high=1.0)
+        as_number("volume", self.volume, low=0.0, high=1.0)
         as_number("support", self.support, low=0.0, high=1.0)
         if self.relaxation < 0:
             raise ParameterError(f"relaxation: {self.relaxation} must be 0 or more")
@@ -176,6 +180,7 @@ PROFILES: dict[str, SpringParameters] = {
         masses="stiffness",
         even=True,
         support=0.4,
+        volume=0.6,
         contact=True,
         motion=LeapfrogParameters(),
     ),
