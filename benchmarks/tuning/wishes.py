@@ -11,6 +11,7 @@ from risorius._check import FloatArray
 from risorius.controls.presets import default_presets
 from risorius.mesh.laplacian import mass
 from risorius.tuning import MuscleCandidates
+from risorius.tuning.muscle_genes import Genes
 from risorius.vectormuscle import VectorFace
 from risorius.vectormuscle.export_points import find_features
 
@@ -41,7 +42,7 @@ class Wish:
     weights: FloatArray
 
     @staticmethod
-    def of(face: VectorFace, truths: Truths, shape: str) -> Wish:
+    def of(face: VectorFace, truths: Truths, shape: str, *, genes: Genes = "all") -> Wish:
         """Return the wish for a true shape on ICT-FaceKit's own head."""
         presets = default_presets()
         poses = [presets.fit(presets.arkit[name], face.controls).pose for name in SHAPES[shape]]
@@ -55,7 +56,8 @@ class Wish:
         weights = mass(skin.mesh.positions, skin.mesh.faces)
         weights[first >= FACE_VERTICES] = 0.0
         width = find_features(face.head).width
-        candidates = MuscleCandidates(face, names, {name: pose[name] for name in names}, width)
+        shown = {name: pose[name] for name in names}
+        candidates = MuscleCandidates(face, names, shown, width, genes=genes)
         return Wish(candidates, truths.expressions[shape][first], weights)
 
     def skin(self, values: FloatArray) -> FloatArray:
@@ -78,6 +80,7 @@ class Wish:
         for row in range(len(genome)):
             moved = genome.start
             reach = 0.25 * (genome.high[row] - genome.low[row])
-            moved[row] += reach
-            columns.append(4.0 * (root * (self.skin(moved) - rest)).ravel())
+            sign = 1.0 if moved[row] + reach <= genome.high[row] else -1.0
+            moved[row] += sign * reach
+            columns.append(4.0 * sign * (root * (self.skin(moved) - rest)).ravel())
         return np.stack(columns, axis=1)

@@ -19,7 +19,7 @@ MUSCLES = {muscle.name: muscle for muscle in builtin_face().vectors.muscles}
 
 def _values(share: float, names: tuple[str, ...] = tuple(MUSCLES)) -> dict[str, float]:
     """Return all genes of some muscles at `share` of the way from low to high."""
-    genes = muscle_parameters([MUSCLES[name] for name in names])
+    genes = muscle_parameters([MUSCLES[name] for name in names], genes="all")
     return {gene.name: gene.low + share * (gene.high - gene.low) for gene in genes}
 
 
@@ -31,9 +31,34 @@ def test_a_linear_muscle_has_ten_genes_that_both_sides_share() -> None:
     assert len(muscle_parameters(pair, mirror=False)) == 20
 
 
+def test_further_genes_say_how_skin_follows_and_bulges() -> None:
+    linear, sheet = MUSCLES["zygomaticus_major_l"], MUSCLES["frontalis_inner_l"]
+    for muscle, further in (
+        (linear, {"out", "corner", "drag", "reach", "bulge"}),
+        (sheet, {"fixed", "fade_origin", "fade_insertion", "out", "drag", "reach"}),
+    ):
+        ten = {gene.name for gene in muscle_parameters([muscle])}
+        everything = {gene.name for gene in muscle_parameters([muscle], genes="all")}
+        assert {name.split(".")[1] for name in everything - ten} == further
+    # A muscle that pulls the whole lip has no corner to hold.
+    names = {gene.name for gene in muscle_parameters([MUSCLES["corrugator_l"]], genes="all")}
+    assert "corrugator.corner" not in names
+
+
+def test_shares_stay_inside_their_limits() -> None:
+    changed = apply_genes(
+        MUSCLES["zygomaticus_major_l"],
+        {"zygomaticus_major.drag": 5.0, "zygomaticus_major.corner": -5.0},
+        width=WIDTH,
+    ).to_json()
+    assert changed["drag"] == 0.95
+    assert "corner" not in changed
+
+
 @pytest.mark.parametrize("name", MUSCLES)
 def test_genes_at_their_start_change_nothing(name: str) -> None:
-    start = {gene.name: gene.start for gene in muscle_parameters([MUSCLES[name]])}
+    genes = muscle_parameters([MUSCLES[name]], genes="all")
+    start = {gene.name: gene.start for gene in genes}
     assert apply_genes(MUSCLES[name], start, width=WIDTH).to_json() == MUSCLES[name].to_json()
 
 

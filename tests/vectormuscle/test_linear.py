@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,6 +13,7 @@ from risorius.mesh.core import TriMesh
 from risorius.vectormuscle.kinds import LinearMuscle
 from risorius.vectormuscle.muscle import KINDS
 from risorius.vectormuscle.profile import fold_limit
+from tests.face_fixtures import builtin_face
 from tests.vectormuscle.patches import context, linear, move_by, patch
 
 MESH = patch()
@@ -200,3 +203,47 @@ def test_an_entry_is_read_and_written_back() -> None:
 def test_a_bad_entry_is_refused_by_place(changes: dict, message: str) -> None:
     with pytest.raises(ParameterError, match=rf"^set: muscle 0 \(pull\): {message}"):
         _read(**changes)
+
+
+def test_skin_around_the_insertion_follows_where_the_muscle_drags() -> None:
+    plain = builtin_face()
+    muscle = next(m for m in plain.vectors.muscles if m.name == "zygomaticus_major_l")
+    assert isinstance(muscle, LinearMuscle)
+    dragging = plain.with_muscles([replace(muscle, drag=0.5, reach=70.0)])
+    before = plain.displace_skin({muscle.name: 1.0})
+    after = dragging.displace_skin({muscle.name: 1.0})
+    moved = np.linalg.norm(after, axis=1)
+    assert (moved > 0.0).sum() > 1.3 * (np.linalg.norm(before, axis=1) > 0.0).sum()
+    # What the cone moves fully hardly moves further; nothing beyond the reach moves.
+    assert moved.max() < 1.1 * np.linalg.norm(before, axis=1).max()
+    away = np.linalg.norm(plain.head.skin.mesh.positions - muscle.insertion, axis=1)
+    fresh = (moved > 0.0) & ~before.any(axis=1)
+    assert away[fresh].max() < 70.0
+    along = muscle.origin - muscle.insertion
+    assert (after[fresh] @ along).sum() > 0.0
+    half = dragging.displace_skin({muscle.name: 0.5})
+    assert np.abs(half[fresh] - 0.5 * after[fresh]).max() < 1e-9
+
+
+def test_bulge_pushes_what_follows_outwards_and_the_plain_muscle_drags_nothing() -> None:
+    face = builtin_face()
+    muscle = next(m for m in face.vectors.muscles if m.name == "depressor_anguli_l")
+    assert isinstance(muscle, LinearMuscle)
+    flat = muscle.bind(face.context)
+    dragged = replace(muscle, drag=0.5).bind(face.context)
+    bulging = replace(muscle, drag=0.5, bulge=0.4).bind(face.context)
+    assert flat.field is None
+    assert dragged.field is not None and bulging.field is not None
+    push = bulging.field - dragged.field
+    normals = face.context.normals[bulging.vertices]
+    assert (np.einsum("kd,kd->k", push, normals) >= 0.0).all()
+    assert push.any()
+    strict = replace(face.context, drag=False)
+    assert replace(muscle, drag=0.5).bind(strict).field is None
+
+
+@pytest.mark.parametrize("change", [{"drag": 1.5}, {"drag": -0.1}, {"reach": 0.0}])
+def test_a_drag_outside_its_range_is_refused(change: dict[str, float]) -> None:
+    muscle = next(m for m in builtin_face().vectors.muscles if isinstance(m, LinearMuscle))
+    with pytest.raises(ParameterError, match=next(iter(change))):
+        replace(muscle, **change)

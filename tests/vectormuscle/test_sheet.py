@@ -1,11 +1,14 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from risorius.errors import ParameterError
 from risorius.vectormuscle.kinds import SheetMuscle
 from risorius.vectormuscle.muscle import KINDS
+from tests.face_fixtures import builtin_face
 from tests.vectormuscle.patches import context, patch
 
 MESH = patch(41, 61)
@@ -114,3 +117,20 @@ def test_a_sheet_without_length_is_refused() -> None:
 def test_a_bad_entry_is_refused_by_place(changes: dict, message: str) -> None:
     with pytest.raises(ParameterError, match=rf"^set: muscle 0 \(lift\): {message}"):
         KINDS["sheet"](ENTRY | changes, "set: muscle 0 (lift)")
+
+
+def test_skin_beside_a_sheet_follows_and_what_moves_may_bulge() -> None:
+    face = builtin_face()
+    muscle = next(m for m in face.vectors.muscles if m.name == "frontalis_inner_l")
+    assert isinstance(muscle, SheetMuscle)
+    plain = muscle.bind(face.context)
+    dragged = replace(muscle, drag=0.4).bind(face.context)
+    assert set(plain.vertices) < set(dragged.vertices)
+    fresh = ~np.isin(dragged.vertices, plain.vertices)
+    assert (dragged.field[fresh, 1] > 0.0).mean() > 0.95
+    bulging = replace(muscle, out=0.3).bind(face.context)
+    push = bulging.field - plain.field
+    size = 0.3 * np.linalg.norm(plain.field, axis=1, keepdims=True)
+    assert np.allclose(push, size * face.context.normals[plain.vertices])
+    entry = replace(muscle, drag=0.4, out=0.3, reach=50.0).to_json()
+    assert KINDS["sheet"](entry, "set").to_json() == entry

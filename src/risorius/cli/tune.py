@@ -42,6 +42,13 @@ class StrategyName(StrEnum):
     cma = "cma"
 
 
+class GenesName(StrEnum):
+    """Which numbers of a muscle are tuned."""
+
+    published = "published"
+    all = "all"
+
+
 def tune(
     head: HeadArgument,
     output: VectorsOutput,
@@ -84,6 +91,14 @@ def tune(
     no_mirror: Annotated[
         bool, typer.Option("--no-mirror", help="Tune left and right by themselves.")
     ] = False,
+    genes: Annotated[
+        GenesName | None,
+        typer.Option(
+            help="published: the ten numbers of each muscle; all: also how skin around it "
+            "follows and bulges.  [default: all, published with --profile faithful]",
+            show_default=False,
+        ),
+    ] = None,
     style: StyleFile = None,
     style_output: Annotated[
         Path | None,
@@ -149,6 +164,7 @@ def tune(
             as_feature(source_point, "--source-point"),
             as_feature(target_point, "--target-point"),
         )
+        plain = given.profile == "faithful"
         choices = TuningChoices(
             tuple(name.strip() for name in expression.split(",") if name.strip()),
             picks=picks,
@@ -157,6 +173,7 @@ def tune(
             strategy=strategy.value,
             seed=seed,
             mirror=not no_mirror,
+            genes=genes.value if genes else "published" if plain else "all",
             sheet=picture,
             view=view,
         )

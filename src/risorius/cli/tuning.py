@@ -15,7 +15,7 @@ from risorius.cli.tuning_pictures import FacePage
 from risorius.controls.presets import PresetBook
 from risorius.errors import ParameterError
 from risorius.tuning.candidates import sensitivity_of
-from risorius.tuning.muscle_genes import MuscleCandidates
+from risorius.tuning.muscle_genes import Genes, MuscleCandidates
 from risorius.tuning.objective import ShapeObjective
 from risorius.tuning.session import Session, tune
 from risorius.tuning.style import Style
@@ -42,6 +42,7 @@ class TuningChoices:
     strategy : str
     seed : int
     mirror : bool
+    genes : {"published", "all"}
     sheet : Path
         Where the nine faces are drawn.
     view : str
@@ -54,6 +55,7 @@ class TuningChoices:
     strategy: str
     seed: int
     mirror: bool
+    genes: Genes
     sheet: Path
     view: str
 
@@ -119,7 +121,10 @@ class _Work:
             face = VectorFace.build(export.target, export.vector_set(), mechanics=self._mechanics)
             emotion = self._presets.emotions[group.expression]
             pose = self._presets.fit(emotion, face.controls).pose
-        candidates = MuscleCandidates(face, group.muscles, pose, width, mirror=self._choices.mirror)
+        choices = self._choices
+        candidates = MuscleCandidates(
+            face, group.muscles, pose, width, mirror=choices.mirror, genes=choices.genes
+        )
         values = self._values(candidates, group.expression)
         self.style = self.style.with_parameters(values)
         return self.style.applied(proposal, width=width)

@@ -39,7 +39,7 @@ __all__ = [
 
 Specs = Mapping[str, LandmarkSpec]
 _CHOICES = {"angular": ("smooth", "published")}
-_RANGES = {"steps": (1, 64), "support": (0.0, 1.0)}
+_RANGES = {"steps": (1, 64), "support": (0.0, 1.0), "drag": (0, 1)}
 
 
 def read_mesh(project: Project) -> tuple[PolygonMesh, Specs]:

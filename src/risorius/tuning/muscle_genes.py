@@ -10,22 +10,23 @@ from typing import Any, Literal, cast
 
 import numpy as np
 
-from risorius._check import FloatArray
+from risorius._check import FloatArray, one_of
 from risorius.controls.control import Pose
 from risorius.tuning.genome import Genome, Parameter
 from risorius.vectormuscle.face import VectorFace
 from risorius.vectormuscle.kinds.linear import MOST_STRENGTH
 from risorius.vectormuscle.muscle import VectorMuscle
 
-__all__ = ["MuscleCandidates", "apply_genes", "muscle_parameters"]
+__all__ = ["Genes", "MuscleCandidates", "apply_genes", "muscle_parameters"]
 
-Way = Literal["shift", "factor", "add"]
+Genes = Literal["published", "all"]
+Way = Literal["shift", "factor", "add", "share"]
 # Spec vector-muscles 2.6: coordinates +-8 % of the head's width, radii +-30 %, angles +-10
 # degrees, strength 0.5 to 1.5; all as changes, so that a style fits the next head as well.
 _SHIFT = ("shift", -0.08, 0.08)
 _LENGTH = ("factor", 0.7, 1.3)
 _AMOUNT = ("factor", 0.5, 1.5)
-_RULES: Mapping[str, tuple[Way, float, float]] = MappingProxyType(
+_PUBLISHED: Mapping[str, tuple[Way, float, float]] = MappingProxyType(
     {
         "origin": _SHIFT, "insertion": _SHIFT, "centre": _SHIFT,
         "start_radius": _LENGTH, "finish_radius": _LENGTH, "radii": _LENGTH,
@@ -34,28 +35,53 @@ _RULES: Mapping[str, tuple[Way, float, float]] = MappingProxyType(
         "part": _AMOUNT, "back": _AMOUNT, "over": _AMOUNT,
     }
 )  # fmt: skip
+# Ours: how skin follows and bulges, which the ten numbers cannot say. Shares change by addition
+# and stay inside the limits.
+_FURTHER: Mapping[str, tuple[Way, float, float]] = MappingProxyType(
+    {
+        "drag": ("share", 0.0, 0.95), "reach": ("factor", 0.5, 2.0), "out": ("add", -0.7, 0.7),
+        "bulge": ("add", -0.7, 0.7),
+        "corner": ("share", 0.0, 0.95), "fixed": ("share", 0.0, 0.6),
+        "fade_origin": ("factor", 0.4, 2.5), "fade_insertion": ("factor", 0.4, 2.5),
+    }
+)  # fmt: skip
+_RULES = MappingProxyType({**_PUBLISHED, **_FURTHER})
 # The start of the fall-off stays below this share of its finish.
 _LATEST_START = 0.9
 _AXES = "xyz"
 
 
 def muscle_parameters(
-    muscles: Iterable[VectorMuscle], *, mirror: bool = True
+    muscles: Iterable[VectorMuscle], *, mirror: bool = True, genes: Genes = "published"
 ) -> tuple[Parameter, ...]:
-    """Return the genes of muscles: ten for a linear one.
+    """Return the genes of muscles: ten for a linear one, or up to five more.
 
     Places shift by shares of the head's width, lengths and amounts are multiplied, angles are
-    added to [deg]. With `mirror` one gene, named without side, drives both sides, and muscles
-    on the midline stay there.
+    added to [deg], shares added to. With `mirror` one gene, named without side, drives both
+    sides, and muscles on the midline stay there.
+
+    Parameters
+    ----------
+    muscles : iterable of VectorMuscle
+    mirror : bool
+    genes : {"published", "all"}
+        The ten numbers of Bui et al. 2003, or also how skin around the muscle follows, bulges
+        and lags.
     """
+    one_of("genes", genes, ("published", "all"))
     result: dict[str, Parameter] = {}
     for muscle in muscles:
         name = muscle.name
         sided = name.endswith(("_l", "_r"))
         stem = name[:-2] if mirror and sided else name
         for gene, (way, low, high), value in _numbers(muscle):
-            if way == "factor" and value == 0.0:
+            if genes == "published" and gene in _FURTHER:
                 continue
+            # What a muscle does not have cannot be scaled; its drag alone may begin.
+            if value == 0.0 and (way == "factor" or gene == "corner"):
+                continue
+            if way == "share":
+                low, high = min(low - value, 0.0), max(high - value, 0.0)
             if mirror and not sided and way == "shift" and gene.endswith("_x"):
                 continue
             full = f"{stem}.{gene}"
@@ -77,22 +103,25 @@ def apply_genes(muscle: VectorMuscle, values: Mapping[str, float], *, width: flo
     """
     stem = muscle.name[:-2] if muscle.name.endswith(("_l", "_r")) else muscle.name
     changed: dict[str, Any] = {}
-    for gene, (way, _, _), value in _numbers(muscle):
+    for gene, rule, value in _numbers(muscle):
         full, shared = f"{muscle.name}.{gene}", f"{stem}.{gene}"
         if full in values:
             change = values[full]
         elif shared in values:
-            mirrored = muscle.name.endswith("_r") and way == "shift" and gene.endswith("_x")
+            mirrored = muscle.name.endswith("_r") and rule[0] == "shift" and gene.endswith("_x")
             change = -values[shared] if mirrored else values[shared]
         else:
             continue
-        changed[gene] = _changed(way, value, change, width)
+        changed[gene] = _changed(rule, value, change, width)
     return _with_numbers(muscle, changed) if changed else muscle
 
 
-def _changed(way: Way, value: float, change: float, width: float) -> float:
+def _changed(rule: tuple[Way, float, float], value: float, change: float, width: float) -> float:
+    way, low, high = rule
     if way == "shift":
         return value + change * width
+    if way == "share":
+        return float(np.clip(value + change, low, high))
     return value * change if way == "factor" else value + change
 
 
@@ -157,6 +186,7 @@ class MuscleCandidates:
     width : float
         Width of the head [mm].
     mirror : bool
+    genes : {"published", "all"}
         See `muscle_parameters`.
     """
 
@@ -165,6 +195,7 @@ class MuscleCandidates:
     pose: Pose
     width: float
     mirror: bool = True
+    genes: Genes = "published"
 
     @cached_property
     def proposed(self) -> tuple[VectorMuscle, ...]:
@@ -179,7 +210,7 @@ class MuscleCandidates:
 
     @cached_property
     def _genome(self) -> Genome:
-        return Genome(muscle_parameters(self.proposed, mirror=self.mirror))
+        return Genome(muscle_parameters(self.proposed, mirror=self.mirror, genes=self.genes))
 
     def muscles(self, values: Mapping[str, float]) -> tuple[VectorMuscle, ...]:
         """Return the tuned muscles."""

@@ -58,7 +58,7 @@ class Style:
         known = {
             parameter.name
             for mirror in (True, False)
-            for parameter in muscle_parameters(listed, mirror=mirror)
+            for parameter in muscle_parameters(listed, mirror=mirror, genes="all")
         }
         return tuple(name for name in self.parameters if name not in known)
 

@@ -38,18 +38,21 @@ class VectorParameters:
         Small steps in which muscles act together.
     support : float
         Share of the inward motion that bone and teeth take away; 0 is the plain muscle.
+    drag : bool
+        Whether skin around an insertion follows, where a muscle says so; unpublished.
     """
 
     angular: AngularProfile = "smooth"
     steps: int = 8
     support: float = 0.75
+    drag: bool = True
 
     @staticmethod
     def of_profile(profile: Profile) -> VectorParameters:
         """Return the parameters of a named profile."""
         one_of("profile", profile, ("improved", "faithful"))
         if profile == "faithful":
-            return VectorParameters(angular="published", support=0.0)
+            return VectorParameters(angular="published", support=0.0, drag=False)
         return VectorParameters()
 
 
@@ -123,8 +126,9 @@ class VectorFace:
             mesh.positions, hinge=moving.jaw.hinge, face_height=head.height / 1.9
         )
         context = FaceContext(
-            mesh.positions, normals, moving, known, chosen.angular, outward, chosen.support
-        )
+            mesh.positions, normals, moving, known,
+            chosen.angular, outward, chosen.support, chosen.drag,
+        )  # fmt: skip
         bound = {muscle.name: muscle.bind(context) for muscle in fitted.muscles}
         wrinkles, notes = bind_all_wrinkles(fitted.muscles, context, faces=mesh.faces)
         controls = controls_of_muscles(tuple(bound)) + moving.controls

@@ -46,6 +46,8 @@ class FaceContext:
         Outward direction of what supports the skin.
     support : float
         Share of the inward motion that it takes away.
+    drag : bool
+        Whether skin around an insertion follows a muscle that asks for it.
     """
 
     positions: FloatArray
@@ -55,6 +57,7 @@ class FaceContext:
     angular: AngularProfile
     outward: FloatArray
     support: float
+    drag: bool = True
 
     @cached_property
     def averaging(self) -> csr_matrix:

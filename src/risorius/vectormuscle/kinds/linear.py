@@ -12,6 +12,7 @@ import numpy as np
 from risorius._check import FloatArray, IntArray, as_number
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.errors import ParameterError, RisoriusWarning
+from risorius.vectormuscle.kinds.drag import drag_field
 from risorius.vectormuscle.kinds.fields import read_regions
 from risorius.vectormuscle.muscle import (
     MIRROR,
@@ -63,6 +64,13 @@ class LinearMuscle:
         whole lip, 1 leaves its middle.
     wrinkles : Wrinkles, optional
         Across the muscle, between a fifth of the start radius and the start radius.
+    drag : float
+        Share of the pull with which skin around the insertion follows, cone or not; 0 is the
+        published muscle.
+    reach : float
+        How far from the insertion skin follows [mm].
+    bulge : float
+        Outward push of the skin that follows, in its motion; negative sinks.
     """
 
     name: str
@@ -76,10 +84,15 @@ class LinearMuscle:
     out: float = 0.0
     corner: float = 0.0
     wrinkles: Wrinkles | None = None
+    drag: float = 0.0
+    reach: float = 60.0
+    bulge: float = 0.0
 
     def __post_init__(self) -> None:
         if float(np.linalg.norm(self.insertion - self.origin)) == 0.0:
             raise ParameterError(f"muscle {self.name}: origin and insertion are one point")
+        as_number(f"muscle {self.name}: drag", self.drag, low=0.0, high=1.0)
+        as_number(f"muscle {self.name}: reach", self.reach, low=1e-6)
         if self.strength > MOST_STRENGTH:
             _warn(
                 f"muscle {self.name}: strength {self.strength:g} would fold the skin; taken as "
@@ -127,6 +140,7 @@ class LinearMuscle:
             insertion=insertion,
             start_radius=scale * self.start_radius,
             finish_radius=scale * self.finish_radius,
+            reach=scale * self.reach,
         )
 
     def ends(self) -> FloatArray:
@@ -167,16 +181,35 @@ class LinearMuscle:
         distance = np.linalg.norm(context.positions - self.origin, axis=1)
         return WrinkleZone((distance - near) / length, self._effect(context), length)
 
+    def _dragged(self, effect: FloatArray, context: FaceContext) -> FloatArray:
+        """Return the field (n, 3) [mm] of what follows outside the cone."""
+        free = context.regions.mobility * (1.0 - np.minimum(effect, 1.0))
+        if self.regions:
+            free = free * context.regions.permission(self.regions)
+        if self.corner:
+            free = free * (1.0 - self.corner * _lip_body(context))
+        amount = self.drag * self.pull * free
+        return drag_field(context, self.ends(), amount, reach=self.reach)
+
     def bind(self, context: FaceContext) -> BoundLinear:
         """Precompute the zone: permitted vertices with an effect."""
         effect = self._effect(context)
-        vertices = np.flatnonzero(effect > 0.0).astype(np.int32)
+        pull, push = self.pull * effect, self.out * self.pull * effect
+        acts, field = effect > 0.0, None
+        if self.drag and context.drag:
+            dragged = self._dragged(effect, context)
+            push = push + self.bulge * np.linalg.norm(dragged, axis=1)
+            acts = acts | dragged.any(axis=1)
+            field = dragged
+        vertices = np.flatnonzero(acts).astype(np.int32)
+        if self.out or field is not None:
+            out = push[vertices, None] * context.normals[vertices]
+            field = out if field is None else field[vertices] + out
         return BoundLinear(
             vertices,
-            self.pull * effect[vertices],
+            pull[vertices],
             self.origin,
-            self.out,
-            context.normals[vertices],
+            field,
             context.outward[vertices],
             context.support,
         )
@@ -198,6 +231,8 @@ class LinearMuscle:
         for key, value in (("out", self.out), ("corner", self.corner)):
             if value:
                 entry[key] = value
+        if self.drag:
+            entry |= {"drag": self.drag, "reach": round(self.reach, 3), "bulge": self.bulge}
         if self.wrinkles:
             entry["wrinkles"] = self.wrinkles.to_json()
         return entry
@@ -208,14 +243,13 @@ class BoundLinear:
     """Zone of a linear muscle: `pull` (k,) [mm] at contraction 1 towards `origin` (3,).
 
     `support` of the motion against `outward` (k, 3) is taken away: skin slides over bone and
-    teeth.
+    teeth. `field` (k, 3) [mm] is the rest of the motion: what bulges, and what is dragged along.
     """
 
     vertices: IntArray
     pull: FloatArray
     origin: FloatArray
-    out: float
-    normals: FloatArray
+    field: FloatArray | None
     outward: FloatArray
     support: float
 
@@ -227,8 +261,8 @@ class BoundLinear:
         result = -np.where(distance > 0.0, scale, 0.0)[:, None] * offset
         if self.support:
             result = self._slide(result)
-        if self.out:
-            result += (self.out * contraction * self.pull)[:, None] * self.normals
+        if self.field is not None:
+            result += contraction * self.field
         return result
 
     def _slide(self, pull: FloatArray) -> FloatArray:
@@ -278,6 +312,9 @@ def _read(entry: Mapping[str, Any], where: str) -> LinearMuscle:
             ("strength", 1.0),
             ("out", 0.0),
             ("corner", 0.0),
+            ("drag", 0.0),
+            ("reach", 60.0),
+            ("bulge", 0.0),
         )
     }
     return LinearMuscle(
@@ -292,6 +329,9 @@ def _read(entry: Mapping[str, Any], where: str) -> LinearMuscle:
         number["out"],
         number["corner"],
         read_wrinkles(entry, where),
+        number["drag"],
+        number["reach"],
+        number["bulge"],
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from risorius._check import FloatArray, as_number
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.errors import ParameterError
+from risorius.vectormuscle.kinds.drag import drag_field
 from risorius.vectormuscle.kinds.fields import read_regions
 from risorius.vectormuscle.kinds.sphincter import BoundField
 from risorius.vectormuscle.muscle import (
@@ -56,6 +57,12 @@ class SheetMuscle:
         Regions it may move; empty for all.
     wrinkles : Wrinkles, optional
         Across the fibres, between origin and insertion.
+    out : float
+        Outward push at full effect, in pulls: tissue that bunches up.
+    drag : float
+        Share of the pull with which skin around the insertion follows; 0 for none.
+    reach : float
+        How far from the insertion skin follows [mm].
     """
 
     name: str
@@ -68,10 +75,15 @@ class SheetMuscle:
     fade_insertion: float = 0.4
     regions: tuple[str, ...] = ()
     wrinkles: Wrinkles | None = None
+    out: float = 0.0
+    drag: float = 0.0
+    reach: float = 60.0
 
     def __post_init__(self) -> None:
         if float(np.linalg.norm(self.insertion - self.origin)) == 0.0:
             raise ParameterError(f"muscle {self.name}: origin and insertion are one point")
+        as_number(f"muscle {self.name}: drag", self.drag, low=0.0, high=1.0)
+        as_number(f"muscle {self.name}: reach", self.reach, low=1e-6)
 
     def mirrored(self) -> SheetMuscle:
         """Return the muscle of the other side."""
@@ -93,6 +105,7 @@ class SheetMuscle:
             insertion=insertion,
             half_width=scale * self.half_width,
             pull=scale * self.pull,
+            reach=scale * self.reach,
         )
 
     def ends(self) -> FloatArray:
@@ -135,12 +148,25 @@ class SheetMuscle:
         """Precompute the field at contraction 1."""
         zone, axis = self.wrinkle_zone(context), self.axis
         effect = self.profile(zone.place) * zone.effect
-        vertices = np.flatnonzero(effect != 0.0).astype(np.int32)
         # Each point moves along its own support, so that the forehead keeps its curve.
-        outward = context.outward[vertices]
-        along = axis - (outward @ axis)[:, None] * outward
+        along = axis - (context.outward @ axis)[:, None] * context.outward
         along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
-        return BoundField(vertices, -self.pull * effect[vertices, None] * along)
+        field = -self.pull * effect[:, None] * along
+        if self.drag and context.drag:
+            field = field + self._dragged(effect, context)
+        if self.out:
+            push = self.out * np.linalg.norm(field, axis=1, keepdims=True)
+            field = field + push * context.normals
+        vertices = np.flatnonzero(field.any(axis=1)).astype(np.int32)
+        return BoundField(vertices, field[vertices])
+
+    def _dragged(self, effect: FloatArray, context: FaceContext) -> FloatArray:
+        """Return the field (n, 3) [mm] of what follows beside and below the sheet."""
+        free = context.regions.mobility * (1.0 - np.clip(np.abs(effect), 0.0, 1.0))
+        if self.regions:
+            free = free * context.regions.permission(self.regions)
+        amount = self.drag * self.pull * free
+        return drag_field(context, self.ends(), amount, reach=self.reach)
 
     def to_json(self) -> dict[str, Any]:
         """Return the recipe entry."""
@@ -157,6 +183,10 @@ class SheetMuscle:
         }
         if self.regions:
             entry["regions"] = list(self.regions)
+        if self.out:
+            entry["out"] = self.out
+        if self.drag:
+            entry |= {"drag": self.drag, "reach": round(self.reach, 3)}
         if self.wrinkles:
             entry["wrinkles"] = self.wrinkles.to_json()
         return entry
@@ -174,6 +204,9 @@ def _read(entry: Mapping[str, Any], where: str) -> SheetMuscle:
         as_number(f"{where}: fade_insertion", entry.get("fade_insertion", 0.4), low=1e-6),
         read_regions(entry, where),
         read_wrinkles(entry, where),
+        as_number(f"{where}: out", entry.get("out", 0.0)),
+        as_number(f"{where}: drag", entry.get("drag", 0.0), low=0.0, high=1.0),
+        as_number(f"{where}: reach", entry.get("reach", 60.0), low=1e-6),
     )
 
 
