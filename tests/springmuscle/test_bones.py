@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from risorius.anatomy.skull import builtin_skull
+from risorius.anatomy.skull import builtin_skull, load_skull
 from risorius.errors import MeshError, ParameterError
+from risorius.layered.muscle_map import default_muscle_map
 from risorius.mesh.core import TriMesh
 from risorius.spatial.closest import signed_distance
 from risorius.springmuscle.bones import (
@@ -170,3 +171,18 @@ def test_an_upper_lip_never_lies_on_the_jaw_nor_a_lower_one_on_the_skull() -> No
     inner = np.abs(surface.mesh.positions[:, :2]).max(axis=1) < 39.0
     assert (on_jaw[inner] == np.where(sides > 0, 0, JAW)[inner]).all()
     assert (on_skull[inner] == np.where(sides < 0, 0, SKULL)[inner]).all()
+
+
+@pytest.mark.real
+def test_a_foreign_skull_serves_as_well_as_the_built_in_one(real_data) -> None:
+    folder = real_data / "myosim_skull"
+    skull = load_skull(
+        (folder / "skull_yup_zfwd.obj", folder / "mandible_yup_zfwd.obj"),
+        folder / "landmarks.json",
+        marks=default_muscle_map().landmarks,
+    )
+    given = _under(given_bones(builtin_mechanics(), skull))
+    built = _under(builtin_bones(builtin_mechanics()))
+    both = (given.bones > 0) & (built.bones > 0)
+    assert both.sum() > 2000
+    assert (given.bones == built.bones)[both].mean() > 0.98
