@@ -182,3 +182,26 @@ def test_a_cell_without_area_takes_its_normal_from_its_neighbours() -> None:
     normals = cell_normals(points, out)
     assert (normals[1, 0] == [0.0, 0.0, 1.0]).all()
     assert np.abs(normals[0, 0]).max() == 0.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"least": 3.0, "most": 2.0}, "least 3 and most 2 must be above 0, least first"),
+        ({"part": 0.0}, "part: 0 is below 0.1"),
+        ({"overlap": 3.0}, "overlap: 3 is above 2"),
+        ({"segment": 0.0}, "segment 0 and breadth 10 must be above 0"),
+        ({"columns": 1}, "columns: 1 is below 2"),
+        ({"yielding": 0.0}, "yielding: 0 is below 0.01"),
+    ],
+)
+def test_impossible_numbers_of_the_fit_are_refused(changes, message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        replace(IMPROVED, **changes)
+
+
+def test_profiles_are_known_by_name() -> None:
+    assert FitParameters.of_profile("improved") == IMPROVED
+    assert FAITHFUL.radius == 8.0
+    with pytest.raises(ParameterError, match="'printed' is not one of faithful, improved"):
+        FitParameters.of_profile("printed")

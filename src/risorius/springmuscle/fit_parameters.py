@@ -82,9 +82,22 @@ class FitParameters:
                 f"muscle thickness: least {self.least:g} and most {self.most:g} must be above 0, "
                 "least first"
             )
-        as_number("skin", self.skin, low=0.0)
-        as_number("radius", self.radius, low=0.0)
-        as_number("overlap", self.overlap, low=1.0, high=2.0)
+        for name in ("skin", "radius", "bone_depth", "jump", "passes", "settle"):
+            as_number(name, getattr(self, name), low=0.0)
+        for name, low, high in (
+            ("overlap", 1.0, 2.0),
+            ("turn", 0.0, 180.0),
+            ("yielding", 0.01, 1.0),
+            ("part", 0.1, 10.0),
+            ("rows", 2.0, 500.0),
+            ("columns", 2.0, 500.0),
+        ):
+            as_number(name, getattr(self, name), low=low, high=high)
+        if not (self.segment > 0.0 and self.breadth > 0.0):
+            raise ParameterError(
+                f"segment {self.segment:g} and breadth {self.breadth:g} must be above 0; infinite "
+                "leaves the division to the skin"
+            )
 
     @staticmethod
     def of_profile(profile: str) -> FitParameters:
