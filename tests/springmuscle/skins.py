@@ -69,7 +69,7 @@ def fit_to(
 ) -> Refined:
     """Fit a square grid of half width `half` in the middle of `surface`."""
     corners = np.array([[[-half, half], [half, half]], [[-half, -half], [half, -half]]])
-    points = np.concatenate([corners, np.full((2, 2, 1), 30.0)], axis=2)
+    points = np.concatenate([corners, np.full((2, 2, 1), 1.5 * half)], axis=2)
     hits = surface.scene.cast(points.reshape(-1, 3), [0.0, 0.0, -1.0])
     layout = Layout(hits.positions.reshape(2, 2, 3), False, np.ones((2, 2), bool))
     layer = Layer(outline or square_outline(), surface, parameters)

@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 from risorius.errors import LandmarkError, ParameterError
+from risorius.mesh.core import TriMesh
 from risorius.springmuscle.fit_parameters import FitParameters
 from risorius.springmuscle.grid import Layout, cell_normals, find_patch, lay_out
+from risorius.springmuscle.measure import FaceMeasure
 from risorius.springmuscle.recipe import MuscleOutline, OutlinePoint, OutlineSettings
+from risorius.springmuscle.surface import SkinSurface
 from tests.springmuscle.skins import depths, fit_to, sphere, square_outline, surface_of
 
 FAITHFUL = FitParameters.of_profile("faithful")
@@ -205,3 +208,23 @@ def test_profiles_are_known_by_name() -> None:
     assert FAITHFUL.radius == 8.0
     with pytest.raises(ParameterError, match="'printed' is not one of faithful, improved"):
         FitParameters.of_profile("printed")
+
+
+@pytest.mark.parametrize("parameters", [FAITHFUL, IMPROVED], ids=["faithful", "improved"])
+@pytest.mark.parametrize("size", [0.5, 3.0])
+def test_a_larger_head_has_the_same_grid_larger(parameters: FitParameters, size: float) -> None:
+    small = surface_of(lambda x, y: sphere(70.0)(x, y) + np.sin(x / 6.0))
+    measure = small.measure
+    large = SkinSurface(
+        TriMesh(size * small.mesh.positions, small.mesh.faces),
+        FaceMeasure(
+            {name: size * place for name, place in measure.landmarks.items()},
+            size * measure.width,
+            size * measure.height,
+        ),
+        small.lips, small.sides, small.hidden, small.normals, small.broad_normals,
+    )  # fmt: skip
+    first, second = fit_to(small, parameters), fit_to(large, parameters, half=20.0 * size)
+    assert first.points.shape == second.points.shape
+    assert np.abs(second.points - size * first.points).max() < 1e-6 * size * 70.0
+    assert np.abs(second.report.thickness - size * first.report.thickness).max() < 1e-6 * size
