@@ -64,6 +64,24 @@ def test_no_control_goes_both_of_its_ways_at_once(fit: FapFit) -> None:
         assert not (weights[fit.contraries] > 0.0).all(axis=1).any()
 
 
+def test_what_moves_slowly_is_answered_without_jumps(fit: FapFit) -> None:
+    rng = np.random.default_rng(3)
+    lengths = [faps()[n].unit != "AU" for n in fit.reading.numbers]
+    shares = np.linspace(0.0, 1.0, 121)
+    for _ in range(6):
+        start, end = (
+            {f.target: float(rng.uniform(f.low, f.high)) for f in faps().values()} for _ in range(2)
+        )
+        path = np.array(
+            [
+                fit.matrix @ fit.weights({n: v + share * (end[n] - v) for n, v in start.items()})
+                for share in shares
+            ]
+        )[:, lengths]
+        jumps = np.abs(np.diff(path, axis=0)).max(axis=1)
+        assert jumps.max() < 0.15 * np.abs(path[-1] - path[0]).max()
+
+
 def test_the_answer_does_not_depend_on_earlier_frames(fit: FapFit) -> None:
     asked = {"fap_3": 300.0, "fap_12": 120.0}
     first = fit.weights(asked)

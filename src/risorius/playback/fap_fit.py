@@ -111,17 +111,20 @@ class FapFit:
     def _without_contraries(self, gram: FloatArray, linear: FloatArray) -> FloatArray:
         """Return the best weights (b,) in which no control goes both of its ways at once.
 
-        Where the free answer has both ends of a control, the smaller one is let go and the rest is
-        fitted again; every round lets go of more, so that there is an end.
+        Where the free answer has both ends of a control, the one that does less is let go and the
+        rest is fitted again. What an end does is its weight times the size of its motion: ends may
+        reach differently far, and by weight alone a jaw would jump where its net motion passes
+        zero. Every round lets go of more, so that there is an end.
         """
-        high = self.high.copy()
+        high, size = self.high.copy(), np.sqrt(gram.diagonal())
         while True:
             found = fit_bounded(gram, linear, low=self.low, high=high)
             up, down = self.contraries[:, 0], self.contraries[:, 1]
             both = (found[up] > 0.0) & (found[down] > 0.0)
             if not both.any():
                 return found
-            smaller = np.where(found[up] < found[down], up, down)[both]
+            does = found * size
+            smaller = np.where(does[up] < does[down], up, down)[both]
             high[smaller] = 0.0
 
     @property
