@@ -6,11 +6,10 @@ import http.client
 import random
 from pathlib import Path
 
-import pytest
+from websockets.exceptions import ConnectionClosed, InvalidHandshake
+from websockets.sync.client import connect
 
 from tests.studio.server import studio
-
-pytest.importorskip("websockets")
 
 
 def _answer(port: int, path: str, **headers: str) -> tuple[int, bytes]:
@@ -24,9 +23,6 @@ def _answer(port: int, path: str, **headers: str) -> tuple[int, bytes]:
 
 
 def _refuses(address: str, origin: str) -> bool:
-    from websockets.exceptions import InvalidHandshake
-    from websockets.sync.client import connect
-
     try:
         with connect(address, origin=origin, open_timeout=10):  # pyright: ignore
             return False
@@ -37,9 +33,6 @@ def _refuses(address: str, origin: str) -> bool:
 def test_foreign_pages_names_and_paths_get_nothing_and_nonsense_breaks_nothing(
     tmp_path: Path,
 ) -> None:
-    from websockets.exceptions import ConnectionClosed
-    from websockets.sync.client import connect
-
     secret = tmp_path / "secret.txt"
     secret.write_text("precious")
     folder = tmp_path / "work"

@@ -33,6 +33,7 @@ class MusclePanel(Panel):
     name = "Muscles"
     icon = "gesture"
     hint = "Click a muscle to change it, or <b>Draw a sheet</b> to make a new one."
+    _vector_hint = "Click a muscle to change it, or <b>Head and tail</b> to make a new one."
 
     def build(self) -> None:
         """Make the elements."""
@@ -80,6 +81,7 @@ class MusclePanel(Panel):
         self._before = dict(self.page.opacity)
         self.page.show(**_INSIDE)
         self._offer_kinds()
+        self._say()
         self.editor.show_handles()
 
     def leave(self) -> None:
@@ -98,6 +100,8 @@ class MusclePanel(Panel):
         if what == "document":
             self._method.set_value(self.shop.document.work.project.method)
             self._offer_kinds()
+            if self.page_is_here and self.sketch is None:
+                self._say()
         if what in ("document", "face", "show"):
             self.list.fill()
             self.editor.fill()
@@ -163,7 +167,10 @@ class MusclePanel(Panel):
         sketch, work = self.sketch, self.shop.document.work
         if sketch is None:
             return
-        muscle = sketch.muscle(self.subject.space, work.muscle_map)
+        try:
+            muscle = sketch.muscle(self.subject.space, work.muscle_map)
+        except ParameterError:  # not yet: more points may make it one
+            muscle = None
         if muscle is not None:
             self.shop.try_out(replace(work, muscle_map=with_muscle(work.muscle_map, muscle)))
         elif self.shop.draft is not None:
@@ -206,7 +213,15 @@ class MusclePanel(Panel):
         self._drawing.set_visibility(False)
         self.page.view.set(tool="look")
         self.page.view.overlay()
-        self.page.say(self.hint)
+        self._say()
+
+    def _say(self) -> None:
+        method = self.shop.document.work.project.method
+        self.page.say(
+            {"layered": self.hint, "vector": self._vector_hint}.get(
+                method, "Spring muscles move by the sliders under <b>Face</b>."
+            )
+        )
 
     def _draw_vector(self) -> None:
         sketch, work = self.sketch, self.shop.document.work

@@ -36,8 +36,8 @@ class ProjectPanel(Panel):
         with group("Head"):
             self._head = ui.label().props("data-mark=head-name")
             ui.label(
-                "Drop a head (OBJ, PLY, STL, GLB) and its landmarks (.json), both in one go or "
-                "the landmarks first."
+                "Drop a head (OBJ, PLY, STL, GLB) and its landmarks, named like it: head.obj and "
+                "head.landmarks.json."
             ).classes("st-help")
             upload = ui.upload(
                 label="drop a head here, or click +", auto_upload=True, multiple=True,
