@@ -114,6 +114,7 @@ def test_06_at_least_95_percent_of_every_muscle_lies_in_its_layer(fitted) -> Non
     for muscle in muscles.muscles:
         report = muscle.report
         assert report.inside >= 0.95, (muscle.name, report.inside)
+        assert report.covered >= 0.9, (muscle.name, report.covered)
         assert (report.thickness > 0.0).all()
         assert report.passes <= 30
 

@@ -132,13 +132,16 @@ class FitReport:
     final : (r - 1, c - 1) bool
         Cells that would have been divided, had they not been too small.
     inside : float
-        Share of the samples in the allowed range.
+        Share of the samples in the allowed range, of those that have skin above them.
     passes : int
         Rounds of refinement.
     missed : int
         Points whose projection found no skin, or jumped, and which kept their interpolated place.
     stopped : {"fits", "small", "stagnation", "limit"}
         Why refinement ended: nothing to do, only cells too small to divide, no gain, too many.
+    covered : float
+        Share of the samples that have skin above them; the others lie below walls of folds or
+        beside the skin.
     """
 
     near: FloatArray
@@ -149,6 +152,7 @@ class FitReport:
     passes: int
     missed: int
     stopped: Literal["fits", "small", "stagnation", "limit"]
+    covered: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -364,15 +364,16 @@ def _finished(work: _Work) -> Refined:
     far = np.maximum(0.0, np.maximum(low - cells.far, cells.far - high))
     depth = np.where(hit, cells.near - (low - 0.5 * layer.least), 0.5 * layer.least)
     thickness = np.clip(2.0 * depth, layer.least, layer.most)
-    total = int(cells.counts[..., 1].sum())
+    asked, total, inside = (int(number) for number in cells.counts.sum(axis=(0, 1)))
     report = FitReport(
         np.where(hit, near, 0.0),
         np.where(hit, far, 0.0),
         thickness,
         cells.final,
-        float(cells.counts[..., 2].sum() / total) if total else 0.0,
+        inside / total if total else 0.0,
         work.passes,
         work.missed,
         work.stopped,
+        total / asked,
     )
     return Refined(work.points, work.normals, work.rows, report)
