@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
@@ -10,13 +10,15 @@ from risorius._check import FloatArray
 from risorius.controls.control import Pose
 from risorius.head.head import Head
 from risorius.landmarks.landmark_set import Landmark, LandmarkSpec
-from risorius.rig.face import Face
+from risorius.rig.face import Face, ManyPoses
 from risorius.rig.rig import MorphTarget, Rig
 
 __all__ = ["bake", "displacement", "empty_rig"]
 
 # Motion below this is noise of the arithmetic and is left out of the targets [mm].
 _STILL = 1e-4
+# Poses that are asked for at once, where a face can: few enough to be interrupted soon.
+_SIDE_BY_SIDE = 32
 
 Progress = Callable[[int, int, str], None]
 
@@ -41,7 +43,7 @@ def bake(
     upon : mapping of str to Pose, optional
         Target name -> pose on top of which it is made; see `displacement`.
     progress : callable, optional
-        Called with (done, all, name) before each pose.
+        Called with (done, all, name) before each pose, or before each group that is solved at once.
 
     Returns
     -------
@@ -50,10 +52,7 @@ def bake(
     """
     head = face.head
     targets: list[MorphTarget] = []
-    for number, (name, pose) in enumerate(poses.items()):
-        if progress is not None:
-            progress(number, len(poses), name)
-        moved = displacement(face, pose, upon=(upon or {}).get(name))
+    for name, pose, moved in _displaced(face, poses, upon or {}, progress):
         moved[(moved * moved).sum(axis=1) <= _STILL * _STILL] = 0.0
         targets.append(MorphTarget.from_dense(name, head.frame.vectors_to_input(moved), pose=pose))
     return empty_rig(head).with_targets(
@@ -74,8 +73,36 @@ def displacement(face: Face, pose: Pose, *, upon: Pose | None = None) -> FloatAr
     """
     if upon is None:
         return face.displace(pose)
-    both = {name: upon.get(name, 0.0) + pose.get(name, 0.0) for name in {**upon, **pose}}
-    return face.displace(both) - face.displace(upon)
+    return face.displace(_both(upon, pose)) - face.displace(upon)
+
+
+def _both(upon: Pose, pose: Pose) -> Pose:
+    return {name: upon.get(name, 0.0) + pose.get(name, 0.0) for name in {**upon, **pose}}
+
+
+def _displaced(
+    face: Face,
+    poses: Mapping[str, Pose],
+    upon: Mapping[str, Pose],
+    progress: Progress | None,
+) -> Iterator[tuple[str, Pose, FloatArray]]:
+    """Yield name, pose and displacement (n, 3) [mm] of every target, in order."""
+    names = list(poses)
+    step = _SIDE_BY_SIDE if isinstance(face, ManyPoses) else 1
+    for first in range(0, len(names), step):
+        part = names[first : first + step]
+        if progress is not None:
+            progress(first, len(names), part[0])
+        if not isinstance(face, ManyPoses):
+            for name in part:
+                yield name, poses[name], displacement(face, poses[name], upon=upon.get(name))
+            continue
+        above = [name for name in part if name in upon]
+        wanted = [_both(upon.get(name, {}), poses[name]) for name in part]
+        found = face.displace_all([*wanted, *(upon[name] for name in above)])
+        beneath = dict(zip(above, found[len(part) :]))
+        for name, moved in zip(part, found):
+            yield name, poses[name], moved - beneath[name] if name in beneath else moved
 
 
 def empty_rig(head: Head) -> Rig:

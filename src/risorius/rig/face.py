@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
 
 from risorius._check import FloatArray
 from risorius.controls.control import Control, Pose
 from risorius.head.head import Head
 
-__all__ = ["Face"]
+__all__ = ["Face", "ManyPoses"]
 
 
 @runtime_checkable
@@ -34,4 +35,13 @@ class Face(Protocol):
 
     def pose(self, pose: Pose) -> FloatArray:
         """Return the posed positions (n, 3) [mm, canonical frame] of every input vertex."""
+        ...
+
+
+@runtime_checkable
+class ManyPoses(Protocol):
+    """A face that solves many poses faster side by side than one after the other."""
+
+    def displace_all(self, poses: Sequence[Pose]) -> list[FloatArray]:
+        """Return the displacement (n, 3) [mm, canonical frame] of every pose."""
         ...

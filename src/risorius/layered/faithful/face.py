@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -26,12 +26,11 @@ from risorius.layered.faithful.lips import joined_contacts, lip_contacts
 from risorius.layered.faithful.live import LiveFace
 from risorius.layered.faithful.motion import MovingMuscles
 from risorius.layered.faithful.parameters import FaithfulParameters
+from risorius.layered.faithful.settling import settled_skins
 from risorius.layered.faithful.skin import SkinModel, build_skin_model
 from risorius.layered.faithful.teeth import Teeth, build_teeth
 from risorius.layered.muscle_map import MuscleMap, default_muscle_map
 from risorius.solvers.constraints import Contacts
-from risorius.solvers.model import State
-from risorius.solvers.pbd import Solver
 
 __all__ = ["FaithfulFace"]
 
@@ -154,12 +153,28 @@ class FaithfulFace:
         ParameterError
             If a control is unknown or not finite.
         """
-        values = resolve_pose(self.controls, pose).values
+        return self.displace_all([pose])[0]
+
+    def displace_all(self, poses: Sequence[Pose]) -> list[FloatArray]:
+        """Return the displacement (n, 3) of every pose, many solved side by side.
+
+        What `displace` returns but for rounding: see `settled_skins`.
+
+        Raises
+        ------
+        ParameterError
+            If a control is unknown or not finite.
+        """
+        resolved = [resolve_pose(self.controls, pose).values for pose in poses]
         still = {c.name for c in self.controls if c.group in _STILL_GROUPS}
-        moved = np.zeros_like(self.head.skin.mesh.positions)
-        if any(value for name, value in values.items() if name not in still):
-            moved = self._even_skin(values)
-        return self.spread(moved, values)
+        rows = [
+            row
+            for row, values in enumerate(resolved)
+            if any(value for name, value in values.items() if name not in still)
+        ]
+        rest = np.zeros_like(self.head.skin.mesh.positions)
+        moved = dict(zip(rows, self._skins([resolved[row] for row in rows]))) if rows else {}
+        return [self.spread(moved.get(row, rest), values) for row, values in enumerate(resolved)]
 
     def pose(self, pose: Pose) -> FloatArray:
         """Return the posed positions (n, 3) [mm, canonical frame] of every input vertex."""
@@ -198,7 +213,7 @@ class FaithfulFace:
 
     def muscle_positions(self, pose: Pose) -> FloatArray:
         """Return all vertices (n, 3) of bones and muscles in a pose [mm]."""
-        return self._anatomy_at(resolve_pose(self.controls, pose).values)
+        return self.anatomy_at(resolve_pose(self.controls, pose).values)
 
     def finished(self, simulated: FloatArray, values: Mapping[str, float]) -> FloatArray:
         """Return the displacement (n, 3) of the skin from its `simulated` positions (n, 3) [mm].
@@ -224,52 +239,35 @@ class FaithfulFace:
             self.head.parts[kind].spread(follower.displace(skin), result)
         return result
 
-    def _even_skin(self, values: Mapping[str, float]) -> FloatArray:
-        moved = self._settled_skin(values)
-        if self.partner is not None and self.parameters.even:
-            moved = self._evened(moved, values, self.partner)
-        rest = self.head.skin.mesh.positions
-        teeth = self.teeth.moved(self.mechanics.jaw, self.jaw_of(values))
-        return teeth.pushed_out(rest + self.lips.part(moved)) - rest
-
-    def _evened(
-        self, moved: FloatArray, values: Mapping[str, float], partner: IntArray
-    ) -> FloatArray:
-        controls = {control.name: control for control in self.controls}
-        opposite = dict(mirrored(values, controls))
-        other = moved if opposite == dict(values) else self._settled_skin(opposite)
-        return 0.5 * (moved + other[partner] * MIRROR)
-
-    def _anatomy_at(self, values: Mapping[str, float]) -> FloatArray:
+    def anatomy_at(self, values: Mapping[str, float]) -> FloatArray:
+        """Return all vertices (n, 3) of bones and muscles, at rest under `values` [mm]."""
         contractions = self.muscles.contractions(values)
         if self.jaw_of(values).at_rest and not any(contractions.values()):
             return self.muscles.anatomy.positions
         return self.muscles.settle(self.bones(values), contractions)
 
-    def _settled_skin(self, values: Mapping[str, float]) -> FloatArray:
-        p, model, n = self.parameters, self.skin.model, self.skin.vertex_count
-        faces = self.muscles.anatomy.faces
-        start = self.anchors.places(self.muscles.anatomy.positions, faces)
-        end = self.anchors.places(self._anatomy_at(values), faces)
+    def _skins(self, poses: Sequence[Mapping[str, float]]) -> list[FloatArray]:
+        """Return the displacement (n, 3) of the skin in every pose [mm]."""
+        controls = {control.name: control for control in self.controls}
+        even = self.partner is not None and self.parameters.even
+        opposite = [dict(mirrored(pose, controls)) if even else dict(pose) for pose in poses]
+        # A pose and its mirror image are often asked for together: each is solved once.
+        wanted = {_key(pose): pose for pose in (*poses, *opposite)}
+        found = dict(zip(wanted, settled_skins(self, list(wanted.values()))))
         rest = self.head.skin.mesh.positions
-        lids = self.lids(values)
-        solver, quick = Solver(), replace(p.skin_solver, iteration_limit=p.ramp_sweeps)
-        positions = model.rest_positions
-        for stage in range(1, p.ramp_steps):
-            share = stage / p.ramp_steps
-            control = self.skin.control(start + share * (end - start), rest + share * (lids - rest))
-            state = State(positions, np.zeros_like(positions))
-            positions = solver.settle(model, state, control, parameters=quick).positions
-        teeth, contacts = self.teeth.moved(self.mechanics.jaw, self.jaw_of(values)), None
-        for _ in range(p.contact_rounds):
-            state = State(positions, np.zeros_like(positions))
-            control = self.skin.control(end, lids, contacts)
-            positions = solver.settle(model, state, control, parameters=p.skin_solver).positions
-            found = self.contacts(teeth, positions[:n])
-            if found is None:
-                break
-            contacts = joined_contacts([contacts, found])
-        return self.finished(positions[:n], values)
+        result: list[FloatArray] = []
+        for pose, other in zip(poses, opposite):
+            moved = self.finished(found[_key(pose)], pose)
+            if self.partner is not None and even:
+                mirror = self.finished(found[_key(other)], other)
+                moved = 0.5 * (moved + mirror[self.partner] * MIRROR)
+            teeth = self.teeth.moved(self.mechanics.jaw, self.jaw_of(pose))
+            result.append(teeth.pushed_out(rest + self.lips.part(moved)) - rest)
+        return result
+
+
+def _key(values: Mapping[str, float]) -> tuple[tuple[str, float], ...]:
+    return tuple(sorted(values.items()))
 
 
 def _fitted_bones(skull: Skull, fitted: FittedSkull) -> dict[str, FloatArray]:

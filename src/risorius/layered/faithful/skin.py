@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from risorius.layered.faithful.parameters import FaithfulParameters
 from risorius.mesh.core import TriMesh
 from risorius.solvers.constraints import Areas, Bends, Constraints, Contacts, Distances, Holds
 from risorius.solvers.model import Control, Model
+from risorius.solvers.pbd import Solver
 from risorius.solvers.surface import surface_constraints
 
 __all__ = ["SkinModel", "build_skin_model"]
@@ -36,12 +37,15 @@ class SkinModel:
         Vertices that lids hold; `holds` of the model name the same.
     notes : tuple of str
         What the mesh did not allow.
+    solver : Solver
+        Keeps the tables of the model.
     """
 
     model: Model
     vertex_count: int
     lid_vertices: IntArray
     notes: tuple[str, ...]
+    solver: Solver = field(default_factory=Solver)
 
     def control(
         self, places: FloatArray, lids: FloatArray, contacts: Contacts | None = None
@@ -51,13 +55,14 @@ class SkinModel:
         Parameters
         ----------
         places : (a, 3) float64
-            Of the anchors' points [mm].
+            Of the anchors' points, or (s, a, 3) of s poses [mm].
         lids : (n, 3) float64
-            Skin with its lids in place [mm].
+            Skin with its lids in place, or (s, n, 3) [mm].
         contacts : Contacts, optional
         """
-        wanted = np.concatenate([lids, places])
-        return Control(lids[self.lid_vertices], wanted[self.model.pinned], contacts=contacts)
+        wanted = np.concatenate([lids, places], axis=-2)
+        held, pinned = lids[..., self.lid_vertices, :], wanted[..., self.model.pinned, :]
+        return Control(held, pinned, contacts=contacts)
 
 
 def build_skin_model(

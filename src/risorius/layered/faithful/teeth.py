@@ -110,9 +110,14 @@ class Teeth:
         """Return the skin (n, 3) with what is still inside put on the surface [mm]."""
         result = positions.copy()
         # Leaving one row may end in the other.
-        for arch in self.arches * _PUSHES:
-            distance, _ = arch.exits(result[arch.vertices])
-            result[arch.vertices] += distance[:, None] * arch.forward
+        for _ in range(_PUSHES):
+            is_out = True
+            for arch in self.arches:
+                distance, _ = arch.exits(result[arch.vertices])
+                result[arch.vertices] += distance[:, None] * arch.forward
+                is_out &= not distance.any()
+            if is_out:
+                break
         return result
 
 
