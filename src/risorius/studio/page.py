@@ -14,6 +14,7 @@ from nicegui.events import GenericEventArguments, KeyEventArguments, ValueChange
 from risorius.errors import FormatError, RisoriusError
 from risorius.studio.looks import ACCENT, CSS
 from risorius.studio.panels.catalogue import PANELS
+from risorius.studio.scene import GROUPS
 from risorius.studio.shortcuts import show_shortcuts
 from risorius.studio.topbar import TopBar
 from risorius.studio.viewport import Viewport
@@ -54,7 +55,7 @@ class Page:
             self.view.on(name, self._event_handler(name))
         ui.keyboard(on_key=self.on_key, ignore=["input", "select", "textarea"])
         shop.listeners.add(self.hear)
-        self.client.on_delete(lambda: shop.listeners.discard(self.hear))
+        self.client.on_delete(self._leave)
         self.say(self.active.hint)
         self.show()
         for what in ("document", "face", "pose", "show"):
@@ -110,7 +111,13 @@ class Page:
         """Set the opacity of groups and hand it to the viewport."""
         self.opacity.update(opacity)
         self.view.set(opacity=self.opacity, hidden=sorted(self.hidden))
+        self.want()
         self.bar.follow()
+
+    def want(self) -> None:
+        """Tell the workshop which groups this page shows."""
+        shown = {name for name, solid in self.opacity.items() if solid > 0.0}
+        self.shop.want(self, GROUPS if self.bar.layout == "two" else shown | {"skin"})
 
     def turn_to(self, name: str) -> None:
         """Bring a panel to the front."""
@@ -130,6 +137,10 @@ class Page:
             self.bar.refresh(what)
             for panel in self.panels:
                 panel.refresh(what)
+
+    def _leave(self) -> None:
+        self.shop.listeners.discard(self.hear)
+        self.shop.want(self, ())
 
     def _turn(self, event: ValueChangeEventArguments[Any]) -> None:
         panel = next((each for each in self.panels if each.name == event.value), self.active)

@@ -35,7 +35,7 @@ SHORTCUTS = {
 
 def show_shortcuts() -> None:
     """Open the page that lists them."""
-    with ui.dialog() as dialog, ui.card().style("min-width:430px"):
+    with ui.dialog() as dialog, ui.card().style("min-width:430px;gap:1px"):
         for chapter, rows in SHORTCUTS.items():
             ui.label(chapter).classes("st-head")
             for keys, meaning in rows:

@@ -90,6 +90,7 @@ class TopBar:
         self.layout = "one" if self.layout == "two" else "two"
         self._two.props(f"color={'primary' if self.layout == 'two' else 'grey-4'}")
         self.page.view.set(layout=self.layout)
+        self.page.want()
 
     def follow(self) -> None:
         """Show the opacities that are set."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -40,14 +40,11 @@ class Show:
         Muscle, with or without side; empty for none.
     played : (n, 3) float64 or None
         Input vertices that stand in for the pose while a stream plays [mm].
-    groups : frozenset of str
-        Groups that move.
     """
 
     heat: str = "none"
     selected: str = ""
     played: FloatArray | None = None
-    groups: frozenset[str] = field(default_factory=lambda: frozenset(GROUPS))
 
 
 class Workshop:
@@ -71,6 +68,7 @@ class Workshop:
         self.draft: Work | None = None
         self.problem = ""
         self.built = asyncio.Event()
+        self._wanted: dict[object, frozenset[str]] = {}
         self.listeners: set[Callable[[str], None]] = set()
         self.epoch = 0
         self._serial = 0
@@ -168,6 +166,15 @@ class Workshop:
         if "played" not in changes:
             self.tell("show")
 
+    def want(self, page: object, groups: Iterable[str]) -> None:
+        """Move only groups that some page shows; none at all when a page leaves."""
+        wanted = frozenset(groups)
+        if wanted:
+            self._wanted[page] = wanted
+        else:
+            self._wanted.pop(page, None)
+        self._wish.set()
+
     def complain(self, sentence: str) -> None:
         """Show a problem on all pages."""
         self.problem = sentence
@@ -237,8 +244,11 @@ class Workshop:
         assert self.stage is not None
         self._serial += 1
         pose = {name: value for name, value in self.pose.items() if value}
+        groups = {"skin"}.union(*self._wanted.values())
         try:
-            message = await self.work(_frame, self.stage, pose, self.show, self.epoch, self._serial)
+            message = await self.work(
+                _frame, self.stage, pose, self.show, groups, (self.epoch, self._serial)
+            )
         except RisoriusError as error:
             self.complain(str(error))
             return
@@ -292,14 +302,16 @@ def _facts(stage: Stage) -> dict[str, Any]:
     }
 
 
-def _frame(stage: Stage, pose: Pose, show: Show, epoch: int, serial: int) -> bytes:
+def _frame(
+    stage: Stage, pose: Pose, show: Show, groups: set[str], numbers: tuple[int, int]
+) -> bytes:
     subject = stage.subject
     positions = subject.face.pose(pose) if show.played is None else show.played
-    posed = stage.posed(pose if show.played is None else {}, positions, set(show.groups | {"skin"}))
+    posed = stage.posed(pose if show.played is None else {}, positions, groups)
     heat = None
     if show.heat != "none":
         names = (show.selected,) if show.selected else ()
         heat = heat_of(show.heat, subject, posed["skin"], muscles=names)
     rest = {each.name: each.mesh.positions for each in stage.meshes}
     colours = {} if heat is None else {"skin": paint(heat[0], heat[1])}
-    return frames.frame(rest, posed, epoch=epoch, serial=serial, paint=colours)
+    return frames.frame(rest, posed, epoch=numbers[0], serial=numbers[1], paint=colours)

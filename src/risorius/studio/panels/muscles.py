@@ -43,6 +43,9 @@ class MusclePanel(Panel):
         self._method = ui.toggle(_METHODS, value=self.shop.document.work.project.method)
         self._method.props("dense no-caps").on_value_change(self.page.safely(self._set_method))
         self._method.props("data-mark=method")
+        ui.toggle({"in": "inside", "out": "outside"}, value="in").props(
+            "dense no-caps"
+        ).on_value_change(lambda e: self.page.show(**(_INSIDE if e.value == "in" else _OUTSIDE)))
         with group("New muscle") as self._new:
             self._name = ui.input("name", value="new_muscle").props("dense").style("width:100%")
             self._name.props("data-mark=new-name")

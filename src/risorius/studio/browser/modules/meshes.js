@@ -159,19 +159,20 @@ export class MeshBook {
     this.touch();
   }
 
-  // Whether a mesh shows in the outer or the inner view.
-  shows(name, inner) {
+  // Whether a mesh shows: in the only view (0), the inner (1) or the outer of two (2).
+  shows(name, mode) {
     const entry = this.byName.get(name), settings = this.settings;
     if (!entry || !settings) return false;
     if (settings.hidden.includes(name)) return false;
-    if (inner) return entry.group === "skull" || entry.group === "muscles";
+    const deep = entry.group === "skull" || entry.group === "muscles";
+    if (mode) return deep === (mode === 1);
     return (settings.opacity[entry.group] ?? 1) > 0.001;
   }
 
-  showFor(inner) {
+  showFor(mode) {
     for (const [name, entry] of this.byName) {
-      entry.mesh.visible = this.shows(name, inner);
-      const opacity = inner ? 1 : this.settings?.opacity[entry.group] ?? 1;
+      entry.mesh.visible = this.shows(name, mode);
+      const opacity = mode ? 1 : this.settings?.opacity[entry.group] ?? 1;
       const material = entry.mesh.material, clear = opacity < 0.999;
       material.opacity = opacity;
       if (material.transparent !== clear) {
@@ -189,10 +190,10 @@ export class MeshBook {
   }
 
   // Meshes that a pointer may hit: those of `groups` (or names) that show.
-  targets(groups, inner) {
+  targets(groups, mode) {
     const result = [];
     for (const [name, entry] of this.byName) {
-      if (!this.shows(name, inner)) continue;
+      if (!this.shows(name, mode)) continue;
       if (groups.includes(entry.group) || groups.includes(name)) result.push(entry.mesh);
     }
     return result;

@@ -64,6 +64,14 @@ export class Overlay {
     this.viewport.touch();
   }
 
+  // Show a clicked place at once; the studio's answer takes its place.
+  promise(point) {
+    this.handles = [...this.handles, { id: "", at: point.toArray(), normal: null, on: null,
+      colour: "#ffd166", label: "" }];
+    this.dots();
+    this.viewport.touch();
+  }
+
   dots() {
     if (this.points) {
       this.group.remove(this.points);

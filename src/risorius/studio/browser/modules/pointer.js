@@ -38,7 +38,7 @@ export class Pointer {
     const ray = this.viewport.views.ray(x, y);
     if (!ray) return null;
     const found = ray.caster.intersectObjects(
-      this.viewport.meshes.targets(groups, ray.inner), false,
+      this.viewport.meshes.targets(groups, ray.mode), false,
     )[0];
     if (!found) return null;
     return found;
@@ -130,7 +130,10 @@ export class Pointer {
     if (this.drawing()) {
       if (e.detail > 1) return;
       const found = this.hit(x, y, this.viewport.settings.drawOn);
-      if (found) this.viewport.emit("place", this.message(found));
+      if (found) {
+        this.viewport.overlay.promise(found.point);
+        this.viewport.emit("place", this.message(found));
+      }
       return;
     }
     const found = this.hit(x, y, ["muscles", "skin", "parts", "skull"]);

@@ -55,7 +55,7 @@ export class Views {
   // Rectangles in CSS pixels from the top left: [x, y, width, height, what].
   rectangles() {
     const [w, h] = this.size, layout = this.viewport.settings.layout;
-    if (layout === "two") return [[0, 0, w / 2, h, 0], [w / 2, 0, w / 2, h, 1]];
+    if (layout === "two") return [[0, 0, w / 2, h, 2], [w / 2, 0, w / 2, h, 1]];
     if (layout === "nine" && this.viewport.meshes.sets.length) {
       return this.viewport.meshes.sets.map((_, k) => [
         ((k % 3) * w) / 3, (Math.floor(k / 3) * h) / 3, w / 3, h / 3, k,
@@ -91,7 +91,7 @@ export class Views {
     for (const [left, top, w, h, what] of rectangles) {
       const marked = nine && this.marks.includes(what);
       if (nine) meshes.showSet(what);
-      else meshes.showFor(what === 1);
+      else meshes.showFor(what);
       this.viewport.overlay.group.visible = !nine;
       this.renderer.setClearColor(marked ? 0x2d4a3a : BACKGROUND);
       this.aim(w, h);
@@ -139,7 +139,7 @@ export class Views {
     const caster = new THREE.Raycaster();
     const place = new THREE.Vector2(((x - left) / w) * 2 - 1, 1 - ((y - top) / h) * 2);
     caster.setFromCamera(place, this.camera);
-    return { caster, inner: !this.nine() && what === 1, what };
+    return { caster, mode: this.nine() ? 0 : what, what };
   }
 
   project(x, y, z) {
