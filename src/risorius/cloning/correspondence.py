@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from risorius._check import BoolArray, FloatArray
+from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.cloning.fine_field import FineField, fading
 from risorius.cloning.landmark_pairs import LandmarkPairs
 from risorius.cloning.lid_trace import LidPair, trusted_lids
@@ -101,7 +101,7 @@ def correspond(
         linear = (np.eye(3) + parameters.local_scale * change) @ linear
     fine = FineField.of(source, target, found.mesh) if parameters.curved else None
     carry = _Improved(
-        mapping, matrix, linear, rest, target.mesh.positions, parameters, target.inside, fine
+        mapping, matrix, linear, rest, target.mesh.positions, parameters, target.cavity, fine
     )
     lids = trusted_lids(source, target, found.mesh.positions, fit.lines)
     notes = [
@@ -177,7 +177,7 @@ class _Improved:
     rest: TriMesh
     target: FloatArray
     parameters: CloneParameters
-    inside: BoolArray
+    cavity: IntArray
     fine: FineField | None
 
     def __call__(self, deltas: FloatArray) -> FloatArray:
@@ -186,7 +186,7 @@ class _Improved:
         turned = np.einsum("vij,vj->vi", self.linear, kept)
         result = self.matrix @ turned
         if self.fine is not None:
-            fade = fading(self.mapping, moves, self.inside)
+            fade = fading(self.mapping, moves, self.cavity)
             result = self.fine.rounded(result, turned) * fade[:, None]
         if self.parameters.form == "absolute":
             places = _at(self.mapping, self.rest.positions)

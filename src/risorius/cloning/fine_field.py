@@ -29,8 +29,10 @@ _FINER = 1.25
 _BEND = 0.27
 # How much a source vertex counts for, compared with the patches on as much skin.
 _SAMPLE = 3.0
-# The same for the patches behind lips and lids.
+# The same for the patches in the eye sockets, whose skin moves by fractions of a millimetre.
 _FIRM = 30.0
+# Cavities beyond this number are sockets, see `Subject.cavity`.
+_MOUTH = 1
 # Samples farther from the target, or turned farther, are none; the same along the contact lines
 # [mm], [deg].
 _FARTHEST, _TURNED, _OFF_LINE = 4.0, 60.0, 6.0
@@ -97,8 +99,7 @@ class FineField:
         samples, vertices = _samples(source, target, fitted)
         areas = mass(fitted.positions, fitted.faces)[vertices]
         bend = _BEND * float(np.sqrt(ours * theirs))
-        # What lies behind lips and lids has no samples; its patches stand.
-        firm = np.where(target.inside, _FIRM, 1.0)
+        firm = np.where(target.cavity > _MOUTH, _FIRM, 1.0)
         return FineField(target.mesh, firm, samples, vertices=vertices, areas=areas, bend=bend)
 
     def rounded(self, carried: FloatArray, moved: FloatArray) -> FloatArray:
@@ -115,14 +116,14 @@ class FineField:
         return self._solve(right)
 
 
-def fading(mapping: Mapping, moves: BoolArray, inside: BoolArray) -> FloatArray:
+def fading(mapping: Mapping, moves: BoolArray, cavity: IntArray) -> FloatArray:
     """Return (n,) by how much motion fades where a place lies between moving and resting corners.
 
     A coarse source knows that a corner moves and the next does not, but not where between them
-    the motion ends; it fades with zero slope and curvature, as skin does. What lies behind lips
-    and lids, `inside` (n,), is left alone.
+    the motion ends; it fades with zero slope and curvature, as skin does. Eye sockets, by `cavity`
+    (n,) of the target, are left alone.
     """
-    return np.where(inside, 1.0, mapping.moving_share(moves) ** 3)
+    return np.where(cavity > _MOUTH, 1.0, mapping.moving_share(moves) ** 3)
 
 
 def _samples(source: Subject, target: Subject, fitted: TriMesh) -> tuple[csr_matrix, IntArray]:
