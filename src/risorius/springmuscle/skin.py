@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
 
 from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.mechanics import Mechanics
@@ -22,6 +21,7 @@ from risorius.solvers.spring_stiffness import edge_stiffness
 from risorius.solvers.springs import SpringNetwork
 from risorius.springmuscle.binding import bind_muscle
 from risorius.springmuscle.bones import SkinBones
+from risorius.springmuscle.lining import lining_pairs, sides_with_lids, touching_lips
 from risorius.springmuscle.measure import FaceMeasure
 from risorius.springmuscle.muscle import JAW
 from risorius.springmuscle.muscle_set import MuscleSet
@@ -34,10 +34,6 @@ __all__ = ["SkinSprings", "build_springs"]
 _AREA = 8.0
 # Skin over a muscle that needs no reach; how far behind a lip's line skin still binds [mm].
 _SKIN, _LINING = 2.0, 3.0
-# Lining hangs on so many vertices of the skin in front of it, this near, that face away from it.
-_THREADS, _DEEP, _FACING = 3, 7.0, 0.0
-# Lips closer than this touch, within so many millimetres of their line [mm].
-_SEAL_GAP, _SEAL_REACH = 3.5, 5.0
 # Tissue holds lining this weakly, it goes with the skin.
 _LINED = 0.005
 # How much more strongly skin is held where it must be still, over a spring to a muscle.
@@ -166,21 +162,11 @@ def build_springs(
     ParameterError
         If the skin is to be held by bones and nothing is known of any.
     """
-    p, mesh = parameters, skin.mesh
-    lips, sides = label_lips(mechanics.lips, FaceMeasure.of(mechanics.head.landmarks))
-    sides = _with_lids(sides, mechanics)
+    p, positions = parameters, skin.positions
     if p.holding == "bone" and attachment is None:
         raise ParameterError("attachment: missing; these parameters hold the skin by bones")
-    positions = mesh.positions
-    pairs = edges(mesh.faces)
-    k = edge_stiffness(mesh, pairs, least_length=p.least_length, least=p.least_stiffness)
-    unit = float(np.median(k))
-    soft = (skin.lids[pairs] > 0.0).all(axis=1)
-    k = np.where(soft, p.lid_softness * k, k)
-    through = _across(skin, sides) if p.across > 0.0 else np.zeros((0, 2), np.int32)
-    if len(through):
-        pairs = np.concatenate([pairs, through])
-        k = np.concatenate([k, np.full(len(through), p.across * unit)])
+    lips, sides = label_lips(mechanics.lips, FaceMeasure.of(mechanics.head.landmarks))
+    pairs, k, unit, across_count = _edges(skin, sides_with_lids(sides, mechanics), p)
     length = np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
     counted = _counted(skin, p) * unit
     bound = _bind(skin, muscles, lips, counted * p.muscle_stiffness, fall_off=p.fall_off)
@@ -216,56 +202,24 @@ def build_springs(
     return SkinSprings(
         skin, network, vertices, segments, numbers, feet, partners, rest_feet, stiffness, shares,
         bone_vertices, bone_feet, on_jaw, np.tile(bone_stiffness, both), tissue,
-        outwards, len(through), _touching(skin), p.seal * unit,
+        outwards, across_count, touching_lips(skin), p.seal * unit,
     )  # fmt: skip
 
 
-def _across(skin: Skin, sides: npt.NDArray[np.int8]) -> IntArray:
-    """Return pairs (q, 2) of lining and the skin close in front of it: lips and lids have a depth.
-
-    Without them skin that slides back would come out behind its own lining. The lining of one lip
-    or lid never hangs on the other one; `sides` (n,) tells them apart.
-    """
-    lining = np.flatnonzero(skin.hidden & (skin.mass > 1e-9))
-    seen = np.flatnonzero(~skin.hidden & (skin.mass > 1e-9))
-    if not (len(lining) and len(seen)):
-        return np.zeros((0, 2), np.int32)
-    limit = _DEEP * skin.scale
-    distance, near = cKDTree(skin.positions[seen]).query(
-        skin.positions[lining], k=_THREADS, distance_upper_bound=limit
-    )
-    rows, columns = np.nonzero(np.isfinite(distance))
-    first, second = lining[rows], seen[near[rows, columns]]
-    facing = np.einsum("qd,qd->q", skin.normals[first], skin.normals[second]) < _FACING
-    # Springs of hardly any length have no direction.
-    long = np.linalg.norm(skin.positions[first] - skin.positions[second], axis=1) > 1e-3
-    kept = facing & long & (sides[first] == sides[second])
-    return np.stack([first[kept], second[kept]], axis=1).astype(np.int32)
-
-
-def _touching(skin: Skin) -> IntArray:
-    """Return pairs (q, 2) of the upper and the lower lip that touch: each with its nearest."""
-    near = (skin.mouth.distance < _SEAL_REACH) & ~skin.hidden
-    upper, lower = (np.flatnonzero(near & (side * skin.mouth.side > 0.0)) for side in (1.0, -1.0))
-    if not (len(upper) and len(lower)):
-        return np.zeros((0, 2), np.int32)
-    limit = _SEAL_GAP * skin.scale
-    parts: list[npt.NDArray[np.intp]] = []
-    for own, other, turned in ((upper, lower, False), (lower, upper, True)):
-        gap, nearest = cKDTree(skin.positions[other]).query(skin.positions[own])
-        kept = np.asarray(gap) < limit
-        pairs = np.stack([own[kept], other[nearest[kept]]], axis=1)
-        parts.append(pairs[:, ::-1] if turned else pairs)
-    return np.unique(np.concatenate(parts), axis=0).astype(np.int32)
-
-
-def _with_lids(sides: npt.NDArray[np.int8], mechanics: Mechanics) -> npt.NDArray[np.int8]:
-    """Return the sides (n,) of mouth and eyes: 1 and -1 for the lips, 2 and more for the lids."""
-    result = sides.copy()
-    for number, margins in enumerate(mechanics.margins.values()):
-        near = margins.distance < 2.0 * margins.height
-        result[near] = np.where(margins.upper[near], 2, 3) + 2 * number
-    return result
+def _edges(
+    skin: Skin, sides: npt.NDArray[np.int8], p: SpringParameters
+) -> tuple[IntArray, FloatArray, float, int]:
+    """Return edges (e, 2), stiffness (e,), that of a plain edge, how many run through the skin."""
+    pairs = edges(skin.mesh.faces)
+    k = edge_stiffness(skin.mesh, pairs, least_length=p.least_length, least=p.least_stiffness)
+    unit = float(np.median(k))
+    soft = (skin.lids[pairs] > 0.0).all(axis=1)
+    k = np.where(soft, p.lid_softness * k, k)
+    if p.across == 0.0:
+        return pairs, k, unit, 0
+    through = lining_pairs(skin, sides)
+    k = np.concatenate([k, np.full(len(through), p.across * unit)])
+    return np.concatenate([pairs, through]), k, unit, len(through)
 
 
 def _neck(skin: Skin) -> IntArray:
