@@ -20,6 +20,12 @@ from tests.tools import require_node_package, require_tool
 
 # A zygomaticus on the left of the built-in skull: cheekbone, cheek, beside the mouth corner.
 LINE = np.array([[50.0, -25.0, 68.0], [41.0, -46.0, 77.0], [29.0, -64.0, 85.0]])
+# What a page may say that makes no sense; the server's log is looked at when it ends.
+JUNK = [
+    None, 3, "x", [], {}, {"mesh": "../../etc/passwd"}, {"mesh": "skin", "face": -1},
+    {"mesh": "skin", "face": 1e300, "bary": ["a", None, {}]}, {"id": {"a": 1}}, {"id": "99999"},
+    {"index": "nine"}, {"index": -5},
+]  # fmt: skip
 SIZES = [(1280, 800), (1920, 1080)]
 
 
@@ -98,6 +104,21 @@ def test_a_muscle_is_drawn_mirrored_and_moves_the_mouth_corner(
             moved = visitor.positions("skin")[corner]
             assert moved[1] > rest[1] + 2.0, "the pose was kept, too"
             assert project.read_bytes() == kept, "opening changes nothing"
+            other = Visitor(new_page(), port)
+            visitor.click("emotion-joy")
+            other.until(
+                lambda: (
+                    np.allclose(other.positions("skin"), visitor.positions("skin"))
+                    and not np.allclose(other.positions("skin")[corner], moved)
+                ),
+                "two tabs show the same work",
+            )
+            other.page.keyboard.press("Control+z")
+            visitor.until(
+                lambda: np.allclose(visitor.positions("skin")[corner], moved, atol=0.01),
+                "what one tab undoes is undone in the other",
+            )
+            assert project.read_bytes() == kept
     again = read_project(project)
     names = [muscle["name"] for muscle in again.inline["muscle_map"]["muscles"]]
     assert "smiler" in names
@@ -162,6 +183,10 @@ def test_three_generations_twenty_steps_a_take_and_a_valid_file(tmp_path: Path) 
         )
         visitor.picture("6_play")
 
+        visitor.panel("Muscles")
+        for name in ("select", "place", "finish", "dragging", "dropped", "handle", "choose"):
+            for junk in JUNK:
+                page.evaluate("([n, j]) => risoriusViewport.emit(n, j)", [name, junk])
         visitor.panel("Export")
         with page.expect_download(timeout=60_000) as download:
             visitor.click("export")
