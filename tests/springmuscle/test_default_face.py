@@ -208,7 +208,7 @@ def test_bones_cut_from_the_head_make_nearly_the_same_face() -> None:
     for pose in _emotions(default_face()).values():
         wanted = default_face().displace(pose)
         apart = np.linalg.norm(cut.displace(pose) - wanted)
-        assert apart < 0.05 * np.linalg.norm(wanted)
+        assert 0.001 * np.linalg.norm(wanted) < apart < 0.15 * np.linalg.norm(wanted)
 
 
 @pytest.mark.parametrize("name", ["joy", "surprise", "anger"])

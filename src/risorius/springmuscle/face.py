@@ -18,7 +18,7 @@ from risorius.controls.presets import mirrored
 from risorius.head.head import Head
 from risorius.solvers.leapfrog import Moved, settle
 from risorius.solvers.springs import SpringState
-from risorius.springmuscle.bones import BoneWay, SkinBones, find_bones
+from risorius.springmuscle.bones import Bones, BoneWay, SkinBones, find_bones
 from risorius.springmuscle.contraction import Contraction
 from risorius.springmuscle.driving import Drive, Driver
 from risorius.springmuscle.fit import Ground, fit_muscles
@@ -111,14 +111,16 @@ class SpringFace:
         ground = Ground.build(moving, find_bones(moving, bones, skull=skull), fit)
         muscles = fit_muscles(recipe or default_recipe(), ground)
         return SpringFace.of_muscles(
-            head, muscles, attachment=ground.skin_bones, mechanics=moving, parameters=p
-        )
+            head, muscles, bones=ground.bones, attachment=ground.skin_bones, mechanics=moving,
+            parameters=p,
+        )  # fmt: skip
 
     @staticmethod
     def of_muscles(
         head: Head,
         muscles: MuscleSet,
         *,
+        bones: Bones | None = None,
         attachment: SkinBones | None = None,
         mechanics: Mechanics | None = None,
         parameters: SpringParameters | None = None,
@@ -129,6 +131,8 @@ class SpringFace:
         ----------
         head : Head
         muscles : MuscleSet
+        bones : Bones, optional
+            Tissue is measured down to them; the built-in skull if left out.
         attachment : SkinBones, optional
             Bone beneath each vertex; needed where the parameters hold the skin by bones.
         mechanics : Mechanics, optional
@@ -148,6 +152,8 @@ class SpringFace:
         partner = mirror_partners(head.skin.mesh)
         hidden = hidden_skin(moving.lips, moving.margins)
         fitted = fit_skull(builtin_skull(), head, symmetric=partner is not None, hidden=hidden)
+        if bones is not None:
+            fitted = replace(fitted, cranium=bones.skull, mandible=bones.jaw)
         skin = build_skin(moving, fitted, partner)
         springs = build_springs(skin, muscles, attachment, moving, p)
         contraction = Contraction(muscles) if p.linked else Contraction(muscles, sweeps=0)
