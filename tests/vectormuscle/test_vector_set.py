@@ -8,7 +8,7 @@ import pytest
 
 from risorius.anatomy.template import SURE_LANDMARKS, builtin_head
 from risorius.controls import MUSCLES, SINGLE_MUSCLES, sided
-from risorius.errors import FormatError, LandmarkError, ParameterError
+from risorius.errors import FormatError, LandmarkError, ParameterError, RisoriusWarning
 from risorius.head import Head
 from risorius.vectormuscle import default_vector_set, parse_vector_set
 from tests.face_fixtures import made_up_head
@@ -142,3 +142,8 @@ def test_a_landmark_that_is_no_place_is_refused() -> None:
 def test_a_number_out_of_range_is_refused_with_the_muscle() -> None:
     with pytest.raises(ParameterError, match="muscle pull_l: finish_radius must be above 0"):
         parse_vector_set(_with(finish_radius=-1.0), source="s")
+
+
+def test_what_means_nothing_in_a_vector_set_is_named() -> None:
+    with pytest.warns(RisoriusWarning, match="mine: muscels means nothing in a vector set"):
+        parse_vector_set({**DATA, "muscels": []}, source="mine")

@@ -102,7 +102,7 @@ def gather(surfaces: Sequence[Surface], camera: Camera, size: tuple[int, int]) -
     return Scene(
         size=size,
         near=camera.near,
-        diagonal=_diagonal(positions[faces.ravel()]),
+        diagonal=_diagonal(positions, faces),
         order=np.array(order, np.int32),
         first_face=first_face,
         opaque_face_count=sum(len(s.faces) for s in drawn if s.opacity >= 1.0),
@@ -187,7 +187,10 @@ def _stacked(rows: Sequence[IntArray], lengths: Sequence[int]) -> IntArray:
     return np.concatenate([np.zeros((0, 3), np.int32), *moved]).astype(np.int32)
 
 
-def _diagonal(positions: FloatArray) -> float:
-    if not len(positions):
+def _diagonal(positions: FloatArray, faces: IntArray) -> float:
+    if not len(faces):
         return 0.0
-    return float(np.linalg.norm(positions.max(axis=0) - positions.min(axis=0)))
+    used = np.zeros(len(positions), bool)
+    used[faces] = True
+    low, high = positions[used].min(axis=0), positions[used].max(axis=0)
+    return float(np.linalg.norm(high - low))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -13,7 +14,7 @@ import numpy as np
 
 from risorius._check import FloatArray
 from risorius.anatomy.template import warp_between
-from risorius.errors import FormatError
+from risorius.errors import FormatError, RisoriusWarning
 from risorius.head.head import Head
 from risorius.vectormuscle import kinds as _kinds  # registers the muscle kinds
 from risorius.vectormuscle.muscle import KINDS, VectorMuscle, read_vector
@@ -22,6 +23,7 @@ __all__ = ["VectorSet", "default_vector_set", "parse_vector_set"]
 
 SCHEMA = "risorius/vector-set"
 VERSION = 1
+_KEYS = frozenset(("schema", "version", "about", "unit", "landmarks", "muscles"))
 
 assert _kinds.__all__
 
@@ -95,6 +97,14 @@ def parse_vector_set(data: Mapping[str, Any], *, source: str) -> VectorSet:
         raise FormatError(
             f"{source}: vector set version {data.get('version')!r} is not {VERSION}; "
             "update risorius to read it"
+        )
+    strange = sorted(set(data) - _KEYS)
+    if strange:
+        warnings.warn(
+            f"{source}: {', '.join(strange)} means nothing in a vector set and is ignored; it may "
+            f"have {', '.join(sorted(_KEYS))}",
+            RisoriusWarning,
+            stacklevel=2,
         )
     marks, entries = data.get("landmarks"), data.get("muscles")
     if not isinstance(marks, dict) or not isinstance(entries, list):
