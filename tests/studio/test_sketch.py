@@ -170,3 +170,22 @@ def test_a_cancelled_job_stops_at_its_next_step() -> None:
     job.cancel()
     with pytest.raises(RisoriusError, match="cancelled"):
         job.tick(2, 4, "anger")
+
+
+@pytest.mark.parametrize("method", ["layered", "vector", "springs"])
+def test_every_method_shows_bodies_that_follow_the_pose(method: str) -> None:
+    stage = _stage(method)
+    bodies = [each for each in stage.meshes if each.group == "muscles"]
+    assert len(bodies) > 20
+    pose = {"zygomaticus_major_l": 1.0}
+    positions = stage.subject.face.pose(pose)
+    posed = stage.posed(pose, positions, {"skin", "muscles"})
+    for each in bodies:
+        assert np.isfinite(posed.get(each.name, each.mesh.positions)).all()
+    if method != "vector":
+        name = next(n for n in posed if n.startswith("zygomaticus_major") and not n.endswith("_r"))
+        body = stage.mesh(name)
+        assert body is not None
+        assert np.abs(posed[name] - body.mesh.positions).max() > 1.0
+        rest = stage.posed({}, stage.subject.head.positions, {"skin", "muscles"})
+        assert np.allclose(rest[name], body.mesh.positions, atol=1e-9)

@@ -17,6 +17,8 @@ from risorius.layered.muscle_shapes import MuscleShapes
 from risorius.mesh.core import TriMesh
 from risorius.render.colours import display_rgb
 from risorius.render.materials import colour_of_material, eye_paint
+from risorius.springmuscle.face import SpringFace
+from risorius.studio.spring_shapes import SpringShapes
 from risorius.studio.subject import Subject
 from risorius.studio.vector_shapes import vector_shapes
 
@@ -62,7 +64,7 @@ class Stage:
 
     subject: Subject
     meshes: tuple[SceneMesh, ...]
-    _shapes: MuscleShapes | None
+    _shapes: MuscleShapes | SpringShapes | None
 
     def mesh(self, name: str) -> SceneMesh | None:
         """Return the mesh called `name`, or None."""
@@ -86,7 +88,9 @@ class Stage:
             values = resolve_pose(subject.face.controls, pose).values
             jaw = JawPose(*(values.get(f"jaw_{n}", 0.0) for n in ("pitch", "yaw", "protrusion")))
             result["mandible"] = subject.mechanics.jaw.move(subject.fitted.mandible.positions, jaw)
-        if "muscles" in groups and self._shapes is not None:
+        if "muscles" in groups and isinstance(self._shapes, SpringShapes):
+            result |= self._shapes.posed(pose)
+        elif "muscles" in groups and isinstance(self._shapes, MuscleShapes):
             result |= self._shapes.posed(pose, positions)
         return result
 
@@ -109,6 +113,9 @@ def stage_of(subject: Subject, before: Stage | None = None) -> Stage:
     bodies: Mapping[str, TriMesh] = {}
     if subject.bench is not None:
         shapes = MuscleShapes.of(subject.bench.face, subject.space)
+        bodies = shapes.meshes
+    elif isinstance(subject.face, SpringFace):
+        shapes = SpringShapes.of(subject.face)
         bodies = shapes.meshes
     elif subject.vector_face is not None:
         bodies = vector_shapes(subject.vector_face)

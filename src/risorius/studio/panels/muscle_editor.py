@@ -136,7 +136,8 @@ class MuscleEditor:
                 self._of_map(muscle)
             else:
                 self._of_vectors(name)
-            self.panel.action("Delete it", "delete", lambda: self.panel.delete(name))
+            if self.shop.document.work.project.method != "springs":
+                self.panel.action("Delete it", "delete", lambda: self.panel.delete(name))
 
     def _contraction(self) -> None:
         controls = self._controls()
@@ -187,7 +188,10 @@ class MuscleEditor:
                 self._number(
                     title_of(key), low, high, float(value), lambda v, k=key: self._set_vector(k, v)
                 )
-        ui.label("Drag head and tail; 'influence' below paints the zone.").classes("st-help")
+        words = "Spring muscles are edited in their recipe file."
+        if muscle is not None:
+            words = "Drag head and tail; 'influence' below paints the zone."
+        ui.label(words).classes("st-help")
 
     def _number(
         self, label: str, low: float, high: float, value: float, keep: Callable[[float], None]

@@ -47,6 +47,10 @@ class MuscleList:
             for muscle in work.muscle_map.muscles:
                 bodies = (f"{muscle.name}_l", f"{muscle.name}_r") if muscle.mirror else None
                 entries.append((f"layer {muscle.layer}", muscle.name, bodies or (muscle.name,)))
+        else:
+            stage = self.panel.shop.stage
+            bodies_shown = [m.name for m in stage.meshes if m.group == "muscles"] if stage else []
+            entries = [("spring muscles", name, (name,)) for name in bodies_shown]
         state = (
             tuple(entries), self.panel.shop.show.selected, frozenset(page.hidden),
             frozenset(self.panel.locked),
@@ -63,9 +67,7 @@ class MuscleList:
                     ui.label(layer).classes("st-head")
                 self._row(name, bodies)
             if not entries:
-                ui.label("Spring muscles are moved here and edited in their recipe file.").classes(
-                    "st-help"
-                )
+                ui.label("No muscles to show.").classes("st-help")
 
     def _row(self, name: str, bodies: tuple[str, ...]) -> None:
         panel, page = self.panel, self.panel.page

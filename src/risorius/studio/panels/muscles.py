@@ -222,7 +222,7 @@ class MusclePanel(Panel):
         method = self.shop.document.work.project.method
         self.page.say(
             {"layered": self.hint, "vector": self._vector_hint}.get(
-                method, "Spring muscles move by the sliders under <b>Face</b>."
+                method, "Click a spring muscle and contract it."
             )
         )
 
