@@ -92,13 +92,12 @@ def tune(
         bool, typer.Option("--no-mirror", help="Tune left and right by themselves.")
     ] = False,
     genes: Annotated[
-        GenesName | None,
+        GenesName,
         typer.Option(
             help="published: the ten numbers of each muscle; all: also how skin around it "
-            "follows and bulges.  [default: all, published with --profile faithful]",
-            show_default=False,
+            "follows and bulges, which reaches further and shows wilder faces."
         ),
-    ] = None,
+    ] = GenesName.published,
     style: StyleFile = None,
     style_output: Annotated[
         Path | None,
@@ -164,7 +163,6 @@ def tune(
             as_feature(source_point, "--source-point"),
             as_feature(target_point, "--target-point"),
         )
-        plain = given.profile == "faithful"
         choices = TuningChoices(
             tuple(name.strip() for name in expression.split(",") if name.strip()),
             picks=picks,
@@ -173,7 +171,7 @@ def tune(
             strategy=strategy.value,
             seed=seed,
             mirror=not no_mirror,
-            genes=genes.value if genes else "published" if plain else "all",
+            genes=genes.value,
             sheet=picture,
             view=view,
         )
