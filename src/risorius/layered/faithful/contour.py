@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from risorius.errors import ShapeError
 from risorius.layered.faithful.action_line import ActionLine
 from risorius.warp.rbf import RbfWarp
 
-__all__ = ["Contour", "contour_vertices", "fill_grid", "harmonic_fill"]
+__all__ = ["Contour", "contour_vertices", "fill_grid", "harmonic_fill", "require_apart"]
 
 # Largest gap between lines that should meet, as share of the contour's length (spec 6).
 _OPEN = 0.02
@@ -44,20 +45,26 @@ class Contour:
                     f"{(number + 1) % 4}; the four lines must meet head to tail"
                 )
 
-    def require_simple(self, positions: FloatArray, faces: IntArray) -> None:
-        """Raise `ShapeError` if opposite lines cross, seen across their best plane (spec 6)."""
-        places = [line.places(positions, faces) for line in self.lines]
-        middle = np.concatenate(places).mean(axis=0)
-        across = np.linalg.svd(np.concatenate(places) - middle, full_matrices=False)[2][:2]
-        flat = [(row - middle) @ across.T for row in places]
-        for one, other in ((0, 2), (1, 3)):
-            found = _first_crossing(flat[one], flat[other])
-            if found is not None:
-                raise ShapeError(
-                    f"contour: segment {found[0]} of line {one} crosses segment {found[1]} of "
-                    f"line {other}; opposite sides of a muscle must not meet, draw it wider there "
-                    "or with a gentler bend"
-                )
+
+def require_apart(sides: Sequence[FloatArray]) -> None:
+    """Raise `ShapeError` if opposite sides cross, seen across their best plane (spec 6).
+
+    Parameters
+    ----------
+    sides : sequence of (k, 3) float64
+        The four sides of a contour as drawn, head to tail [mm].
+    """
+    middle = np.concatenate(sides).mean(axis=0)
+    across = np.linalg.svd(np.concatenate(sides) - middle, full_matrices=False)[2][:2]
+    flat = [(row - middle) @ across.T for row in sides]
+    for one, other in ((0, 2), (1, 3)):
+        found = _first_crossing(flat[one], flat[other])
+        if found is not None:
+            raise ShapeError(
+                f"contour: segment {found[0]} of line {one} crosses segment {found[1]} of line "
+                f"{other}; opposite sides of a muscle must not meet, draw it wider there or with "
+                "a gentler bend"
+            )
 
 
 def _first_crossing(first: FloatArray, second: FloatArray) -> tuple[int, int] | None:

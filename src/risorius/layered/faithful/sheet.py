@@ -9,7 +9,13 @@ import numpy as np
 from risorius._check import FloatArray, IntArray
 from risorius.anatomy.outwards import unit
 from risorius.layered.faithful.action_line import ActionLine, Ground, sample_line
-from risorius.layered.faithful.contour import Contour, contour_vertices, fill_grid, harmonic_fill
+from risorius.layered.faithful.contour import (
+    Contour,
+    contour_vertices,
+    fill_grid,
+    harmonic_fill,
+    require_apart,
+)
 from risorius.layered.faithful.parameters import FaithfulParameters
 from risorius.layered.muscle import Sheet
 
@@ -138,6 +144,7 @@ def lay_sheet(
     across = unit(np.cross(unit(np.gradient(line, axis=0)), ground.out(line)))
     offsets = np.linspace(-1.0, 1.0, columns)
     drawn = line + offsets[:, None, None] * sheet.half_width[:, None] * across
+    require_apart((drawn[0], drawn[:, -1], drawn[-1, ::-1], drawn[::-1, 0]))
     sides = (
         ground.lay(drawn[0], name="first side"),
         ground.lay(drawn[-1], name="second side").reversed,
@@ -159,7 +166,6 @@ def lay_sheet(
     grid = np.stack([(1.0 - share) * side[low] + share * side[low + 1] for side in drawn], axis=1)
     contour = Contour((sides[0], insertion, sides[1], origin))
     contour.require_closed(ground.positions, ground.faces)
-    contour.require_simple(ground.positions, ground.faces)
     return SheetLines(
         contour, inner, rows, columns, ground.out(grid.reshape(-1, 3)), p.largest_contraction
     )
