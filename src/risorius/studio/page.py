@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Awaitable, Callable
 from functools import wraps
 from inspect import isawaitable
@@ -119,10 +118,6 @@ class Page:
         shown = {name for name, solid in self.opacity.items() if solid > 0.0}
         self.shop.want(self, GROUPS if self.bar.layout == "two" else shown | {"skin"})
 
-    def turn_to(self, name: str) -> None:
-        """Bring a panel to the front."""
-        self.tabs.set_value(name)
-
     # -- events -----------------------------------------------------------------------------
 
     def hear(self, what: str) -> None:
@@ -192,7 +187,3 @@ class Page:
     def redo(self) -> None:
         """Do a step again."""
         self.tell(f"done again: {self.shop.redo()}")
-
-    async def wait_for_face(self) -> None:
-        """Wait until there is a face."""
-        await asyncio.wait_for(self.shop.built.wait(), 120)

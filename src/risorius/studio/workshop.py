@@ -156,8 +156,7 @@ class Workshop:
             self.document.apply(label, replace(self.document.work, pose=pose), gesture=gesture)
         except RisoriusError as error:
             self.complain(str(error))
-        self.tell("document")
-        self.tell("pose")
+        self._announce()
 
     def present(self, **changes: Any) -> None:
         """Change what is shown beside the sliders."""
@@ -184,8 +183,19 @@ class Workshop:
         self.pose = dict(self.document.work.pose)
         self.show = replace(self.show, played=None)
         self._wish.set()
+        self._announce()
+
+    def _announce(self) -> None:
+        """Tell of a new state, and where it is kept if it had to move."""
         self.tell("document")
         self.tell("pose")
+        keeper = self.document.keeper
+        if keeper.moved_from is not None:
+            old, keeper.moved_from = keeper.moved_from, None
+            self.complain(
+                f"{old.name} was changed by another program and stays as it is; your work goes on "
+                f"in {keeper.path.name}"
+            )
 
     def rig(self, sets: Sequence[str], job: Job) -> Rig:
         """Bake the face at hand, or return what was baked of it before; runs in any thread.

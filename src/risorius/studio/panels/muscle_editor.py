@@ -181,7 +181,9 @@ class MuscleEditor:
             ).classes("st-help")
 
     def _of_vectors(self, name: str) -> None:
-        muscle = next((m for m in self.shop.document.work.vectors.muscles if m.name == name), None)
+        work = self.shop.document.work
+        known = work.vectors.muscles if work.project.method == "vector" else ()
+        muscle = next((each for each in known if each.name == name), None)
         for key, (low, high) in _VECTOR.items():
             value = getattr(muscle, key, None)
             if isinstance(value, float | int):
