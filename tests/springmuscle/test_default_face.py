@@ -20,6 +20,8 @@ from risorius.rig.quality.inspection import inspect_rig
 from risorius.springmuscle.contraction import Contraction
 from risorius.springmuscle.face import SpringFace
 from risorius.springmuscle.measure import FaceMeasure
+from risorius.springmuscle.queries import refit
+from risorius.springmuscle.recipe_file import default_recipe
 from risorius.springmuscle.surface import label_lips
 from tests.springmuscle.coarse import coarse_mechanics
 from tests.springmuscle.faces import builtin_mechanics
@@ -276,3 +278,24 @@ def test_what_holds_the_lips_together_adds_no_force_to_the_head() -> None:
     forces = face.springs.seal_forces(face.driver.fields["zygomaticus_major_l"])
     assert np.abs(forces).max() > 0.0
     assert np.abs(forces.sum(axis=0)).max() < 1e-9 * np.abs(forces).sum()
+
+
+def test_a_muscle_that_is_drawn_anew_changes_what_it_does_and_nothing_else() -> None:
+    face = default_face()
+    assert face.ground is not None
+    outline = default_recipe().outline("zygomaticus_major_l")
+    stronger = replace(outline, settings=replace(outline.settings, max_contraction=0.3))
+    changed = face.with_muscles(refit(face.muscles, stronger, face.ground))
+    own, other = {"zygomaticus_major_l": 1.0}, {"depressor_anguli_l": 1.0, "mentalis_r": 0.5}
+    assert np.abs(changed.displace(own) - face.displace(own)).max() > 1.0
+    # Without mirror symmetry of the muscles sides are no longer averaged.
+    assert np.abs(changed.displace(other) - face.displace(other)).max() < 0.3
+    fresh = SpringFace.of_muscles(
+        face.head, changed.muscles, bones=face.ground.bones, mechanics=face.mechanics
+    )
+    assert np.abs(fresh.displace(own) - changed.displace(own)).max() < 1e-9
+    assert face.muscles.symmetric
+    assert not changed.muscles.symmetric
+    assert not changed.muscles.twins("zygomaticus_major_l", "zygomaticus_major_r")
+    opposite = {"zygomaticus_major_r": 1.0}
+    assert np.abs(changed.displace(opposite) - face.displace(opposite)).max() < 0.5

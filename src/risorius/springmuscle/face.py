@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -55,6 +56,10 @@ class SpringFace:
     parameters : SpringParameters
     notes : tuple of str
         What was left out, and why.
+    attachment : SkinBones or None
+        Bone beneath each vertex.
+    ground : Ground or None
+        What the muscles were fitted to, for fitting one anew.
     """
 
     head: Head
@@ -67,6 +72,8 @@ class SpringFace:
     controls: tuple[Control, ...]
     parameters: SpringParameters
     notes: tuple[str, ...] = ()
+    attachment: SkinBones | None = None
+    ground: Ground | None = None
 
     @staticmethod
     def build(
@@ -110,10 +117,11 @@ class SpringFace:
         fit = FitParameters.of_profile(profile)
         ground = Ground.build(moving, find_bones(moving, bones, skull=skull), fit)
         muscles = fit_muscles(recipe or default_recipe(), ground)
-        return SpringFace.of_muscles(
+        face = SpringFace.of_muscles(
             head, muscles, bones=ground.bones, attachment=ground.skin_bones, mechanics=moving,
             parameters=p,
         )  # fmt: skip
+        return replace(face, ground=ground)
 
     @staticmethod
     def of_muscles(
@@ -156,30 +164,62 @@ class SpringFace:
             fitted = replace(fitted, cranium=bones.skull, mandible=bones.jaw)
         skin = build_skin(moving, fitted, partner)
         springs = build_springs(skin, muscles, attachment, moving, p)
-        contraction = Contraction(muscles) if p.linked else Contraction(muscles, sweeps=0)
-        driver = Driver(springs, contraction, moving, p)
+        driver = Driver(springs, _contraction(muscles, p), moving, p)
         contact = Contact.build(skin, moving) if p.contact else None
         volume = None
         if p.volume:
             volume = Volume.build(skin, moving, springs.network.fixed, p.volume)
         controls = muscles.controls + moving.controls
         face = SpringFace(
-            head, moving, muscles, springs, driver, contact, volume, controls, p, moving.notes
-        )
-        return face.with_fields() if p.riding else face
+            head, moving, muscles, springs, driver, contact, volume, controls, p, moving.notes,
+            attachment,
+        )  # fmt: skip
+        return face.with_fields({}) if p.riding else face
 
-    def with_fields(self) -> SpringFace:
-        """Return the face with what every muscle control does alone, so that muscles ride."""
+    def with_muscles(self, muscles: MuscleSet) -> SpringFace:
+        """Return the face on other muscles, such as `queries.refit` returns while one is drawn.
+
+        Only what changed is computed: muscles that are the same objects keep what they do alone.
+        """
+        p, moving = self.parameters, self.mechanics
+        springs = build_springs(self.springs.skin, muscles, self.attachment, moving, p)
+        face = replace(
+            self, muscles=muscles, springs=springs, controls=muscles.controls + moving.controls,
+            driver=Driver(springs, _contraction(muscles, p), moving, p),
+        )  # fmt: skip
+        if not p.riding:
+            return face
+        before, after = ({id(m): m for m in s.muscles} for s in (self.muscles, muscles))
+        known = dict(self.driver.fields)
+        # Muscles that hold each other, by rest or by links, all change together.
+        if p.resting > 0.0 or p.linked:
+            known = {}
+        for key in before.keys() ^ after.keys():
+            known.pop((before.get(key) or after[key]).action.control, None)
+        return face.with_fields(known)
+
+    def with_fields(self, known: Mapping[str, FloatArray]) -> SpringFace:
+        """Return the face with what every muscle control does alone, so that muscles ride.
+
+        Parameters
+        ----------
+        known : mapping of str to (n, 3) float64
+            What some of the controls do [mm].
+        """
         alone = replace(self, driver=replace(self.driver, fields={}, seals={}))
         tight = replace(self.springs, network=self.springs.sealed)
         sealed = replace(alone, springs=tight, driver=replace(alone.driver, springs=tight))
         sealing = {m.action.control for m in self.muscles.muscles if m.action.seal}
         fields: dict[str, FloatArray] = {}
         seals: dict[str, FloatArray] = {}
-        partner = self.springs.skin.partner if self.parameters.even else None
+        partner = self._partner
         for control in self.muscles.controls:
             other = control.mirror
-            if partner is not None and other != control.name and other in fields:
+            if control.name in known:
+                fields[control.name] = known[control.name]
+            elif (
+                partner is not None and other in fields and self.muscles.twins(control.name, other)
+            ):
                 fields[control.name] = fields[other][partner] * MIRROR
             else:
                 face = sealed if control.name in sealing else alone
@@ -210,10 +250,8 @@ class SpringFace:
             moving = moving or jaw
         if not moving:
             return np.zeros_like(rest)
-        partner = self.springs.skin.partner
-        if not self.parameters.even or partner is None:
-            return self._settled_skin(values)
-        return self._even_skin(values, partner)
+        partner = self._partner
+        return self._settled_skin(values) if partner is None else self._even_skin(values, partner)
 
     def displace(self, pose: Pose) -> FloatArray:
         """Return the displacement (n, 3) [mm, canonical frame] of every input vertex.
@@ -256,6 +294,12 @@ class SpringFace:
         part.spread(self.contact.resolve(moved, values), result)
         return result
 
+    @cached_property
+    def _partner(self) -> IntArray | None:
+        """Vertex opposite to each (w,), where skin and muscles are their own mirror images."""
+        even = self.parameters.even and self.muscles.symmetric
+        return self.springs.skin.partner if even else None
+
     def _dragged_parts(self, skin: FloatArray, values: Mapping[str, float]) -> FloatArray:
         """Let springs move the skin with the jaw, and mechanics all the rest."""
         result = self.mechanics.pose(np.zeros_like(skin), values)
@@ -280,3 +324,7 @@ class SpringFace:
         own = self._settled_skin(values)
         other = own if opposite == dict(values) else self._settled_skin(opposite)
         return 0.5 * (own + other[partner] * MIRROR)
+
+
+def _contraction(muscles: MuscleSet, parameters: SpringParameters) -> Contraction:
+    return Contraction(muscles) if parameters.linked else Contraction(muscles, sweeps=0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -82,6 +82,28 @@ class MuscleSet:
                 for m in self.muscles
             ]
         )
+
+    @cached_property
+    def symmetric(self) -> bool:
+        """Whether every paired muscle has its exact mirror image."""
+        sided = {m.action.control for m in self.muscles if m.side}
+        paired = {c.name: c.mirror for c in self.controls if c.name in sided}
+        return all(one == other or self.twins(one, other) for one, other in paired.items())
+
+    def twins(self, one: str, other: str) -> bool:
+        """Return whether the muscles of two controls are exact mirror images of each other."""
+        first, second = (
+            {m.name: m for m in self.muscles if m.action.control == name} for name in (one, other)
+        )
+        if one == other or len(first) != len(second):
+            return False
+        for name, muscle in first.items():
+            twin = second.get(name[:-2] + {"_l": "_r", "_r": "_l"}.get(name[-2:], name[-2:]))
+            if twin is None or replace(twin.action, control=one) != muscle.action:
+                return False
+            if not np.array_equal(_points(muscle) * [-1.0, 1.0, 1.0], _points(twin)):
+                return False
+        return True
 
     @cached_property
     def points(self) -> FloatArray:
@@ -195,6 +217,10 @@ class MuscleSet:
         swung = jaw.move(self.aims, pose)
         aims = self.aims + fixed[:, None] * (swung - self.aims)
         return points, np.where(self.ring_muscles[self.point_muscle, None], aims, points)
+
+
+def _points(muscle: FittedMuscle) -> FloatArray:
+    return np.concatenate([fibre.points for fibre in muscle.fibres])
 
 
 def _stacked(parts: list[FloatArray], empty: tuple[int, ...]) -> FloatArray:
