@@ -189,3 +189,12 @@ def test_every_method_shows_bodies_that_follow_the_pose(method: str) -> None:
         assert np.abs(posed[name] - body.mesh.positions).max() > 1.0
         rest = stage.posed({}, stage.subject.head.positions, {"skin", "muscles"})
         assert np.allclose(rest[name], body.mesh.positions, atol=1e-9)
+
+
+def test_a_hit_is_found_again_at_its_very_place() -> None:
+    for kind in ("cranium", "skin", "zygomaticus_major_l"):
+        body = _stage().mesh(kind)
+        assert body is not None
+        corners = body.mesh.positions[body.mesh.faces[7]]
+        place = place_of({"mesh": kind, "face": 7, "bary": [0.7, 0.2, 0.1]}, _stage())
+        assert np.allclose(place.position, 0.7 * corners[0] + 0.2 * corners[1] + 0.1 * corners[2])
