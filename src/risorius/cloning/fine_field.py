@@ -120,8 +120,16 @@ def fading(mapping: Mapping, moves: BoolArray, cavity: IntArray) -> FloatArray:
     """Return (n,) by how much motion fades where a place lies between moving and resting corners.
 
     A coarse source knows that a corner moves and the next does not, but not where between them
-    the motion ends; it fades with zero slope and curvature, as skin does. Eye sockets, by `cavity`
-    (n,) of the target, are left alone.
+    the motion ends; it fades with zero slope and curvature, as skin does. Eye sockets are left
+    alone.
+
+    Parameters
+    ----------
+    mapping : Mapping
+    moves : (v,) bool
+        Moving vertices of the source's skin.
+    cavity : (n,) int32
+        `Subject.cavity` of the target.
     """
     return np.where(cavity > _MOUTH, 1.0, mapping.moving_share(moves) ** 3)
 
