@@ -104,7 +104,7 @@ class TopBar:
         document = self.page.shop.document
         self._file.set_text(document.keeper.path.name)
         self._file.props(f'title="{document.keeper.path}"')
-        count = document.history[1]
-        self._kept.set_text("kept" if count else "not changed yet")
+        kept = document.keeper.path.is_file()
+        self._kept.set_text("kept" if kept else "not changed yet")
         self._undo.set_enabled(bool(document.undo_label))
         self._redo.set_enabled(bool(document.redo_label))
