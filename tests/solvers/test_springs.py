@@ -334,3 +334,25 @@ def test_an_explosion_is_an_error_and_not_a_result(path: str) -> None:
     start = SpringState(network.rest_positions, np.full((42, 3), np.inf))
     with pytest.raises(SolverError, match="not finite"):
         settle(network, start, _control(network), path=path)
+
+
+def test_edges_without_length_and_without_knee_stay_finite() -> None:
+    points = np.array([(0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (5.0, 0.0, 0.0)])
+    network = SpringNetwork(
+        points, np.array([(0, 1), (1, 2)], np.int32), np.array([0.0, 4.0]), np.ones(2),
+        stiffening=3.0, knee_lengths=np.array([np.inf, 4.5]),
+    )  # fmt: skip
+    start = SpringState.still(points)
+    for path in PATHS:
+        found = settle(network, start, SpringControl(), parameters=TIGHT, path=path).state.positions
+        assert np.linalg.norm(found[2] - found[1]) == pytest.approx(4.0, abs=1e-3)
+        assert np.linalg.norm(found[1] - found[0]) < 1e-3
+
+
+def test_a_network_that_is_fixed_as_a_whole_rests() -> None:
+    network = replace(_net(levels=1), fixed=np.ones(42, bool))
+    start = SpringState.still(network.rest_positions)
+    for path in PATHS:
+        found = settle(network, start, _control(network), path=path)
+        assert (found.state.positions == network.rest_positions).all()
+        assert found.steps == 0

@@ -14,7 +14,7 @@ from risorius.solvers.spring_layout import PackLayout, pack_layout
 __all__ = ["SpringControl", "SpringNetwork", "SpringState"]
 
 # Stands for "never" in the kernels, where an infinity would make not-a-number.
-_NEVER = 1e30
+_NEVER = 1e20
 
 
 def _unset() -> FloatArray:

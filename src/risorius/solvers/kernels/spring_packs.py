@@ -16,6 +16,8 @@ from risorius.solvers.kernels.simd import PACK, larger, reciprocal_root
 
 __all__ = ["leapfrog_packs"]
 
+_INLINED = {**FLAGS, "forceinline": True}
+
 _ROW = 3 * PACK
 _EDGE, _BIPHASIC = 2 * PACK, 3 * PACK
 _ANCHOR = 5 * PACK
@@ -23,7 +25,7 @@ _ANCHOR = 5 * PACK
 _TINY = 1e-24
 
 
-@njit(**{**FLAGS, "forceinline": True})
+@njit(**_INLINED)
 def _pull_of_edges(t, rows, block, x, y, z, fx, fy, fz):
     """Add what linear edges exert: ``k (L - L0) / L = k - k L0 / L``, which needs no L."""
     for slot in range(t.edge_start[block], t.edge_start[block + 1]):
@@ -37,7 +39,7 @@ def _pull_of_edges(t, rows, block, x, y, z, fx, fy, fz):
     return fx, fy, fz
 
 
-@njit(**{**FLAGS, "forceinline": True})
+@njit(**_INLINED)
 def _pull_of_biphasic_edges(t, rows, block, x, y, z, fx, fy, fz):
     """As `_pull_of_edges`, plus ``s k max(1 - L1 / L, 0)`` beyond the knees L1."""
     for slot in range(t.edge_start[block], t.edge_start[block + 1]):
@@ -54,7 +56,7 @@ def _pull_of_biphasic_edges(t, rows, block, x, y, z, fx, fy, fz):
     return fx, fy, fz
 
 
-@njit(**{**FLAGS, "forceinline": True})
+@njit(**_INLINED)
 def _pull_of_anchors(t, block, x, y, z, fx, fy, fz):
     for slot in range(t.anchor_start[block], t.anchor_start[block + 1]):
         row = slot * _ANCHOR
@@ -68,7 +70,7 @@ def _pull_of_anchors(t, block, x, y, z, fx, fy, fz):
     return fx, fy, fz
 
 
-@njit(**{**FLAGS, "forceinline": True})
+@njit(**_INLINED)
 def _apart(ax, ay, az, bx, by, bz):
     """Return the vector from b to a and the reciprocal of its length."""
     x = ax - bx
@@ -77,7 +79,7 @@ def _apart(ax, ay, az, bx, by, bz):
     return x, y, z, reciprocal_root(x * x + (y * y + (z * z + _TINY)))
 
 
-@njit(**{**FLAGS, "forceinline": True})
+@njit(**_INLINED)
 def _place(array, row):
     return (
         load_pack(array, row),
@@ -86,7 +88,7 @@ def _place(array, row):
     )
 
 
-@njit(**{**FLAGS, "forceinline": True})
+@njit(**_INLINED)
 def _put(array, row, x, y, z):
     store(array, row, x)
     store(array, row + PACK, y)
