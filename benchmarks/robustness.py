@@ -16,7 +16,7 @@ from risorius.project import Project
 from risorius.project.assemble import face_of
 
 FARTHEST = 80.0
-"""What no vertex of a human face may exceed [mm of the built-in head]; the chin goes half as far."""
+"""What no vertex of a human face may exceed [mm of the built-in head]; a chin goes half as far."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from importlib import import_module
 import pytest
 
 import risorius
-from tests.conventions import REPOSITORY, SOURCE, table
+from tests.conventions import REPOSITORY, SOURCE
 
 PROJECT = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf-8"))
 DOCUMENTS = [*sorted(REPOSITORY.glob("*.md")), *sorted((REPOSITORY / "docs").rglob("*.md"))]
@@ -105,10 +105,7 @@ def test_every_file_that_contributing_names_exists() -> None:
     text = _read("CONTRIBUTING.md")
     named = set(re.findall(r"`((?:src|tests|tools|docs|benchmarks|examples|\.ci)/[\w./-]+)`", text))
     assert len(named) > 10
-    planned = {row[0].strip("`") for row in table("planned", text)}
-    absent = {name for name in named if not (REPOSITORY / name).exists()}
-    assert absent - planned == set()
-    assert planned <= absent, "no longer planned, take them off the table"
+    assert {name for name in named if not (REPOSITORY / name).exists()} == set()
 
 
 def test_the_map_in_contributing_names_every_folder() -> None:
