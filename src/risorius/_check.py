@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import warnings
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from risorius.errors import ParameterError, ShapeError
+from risorius.errors import ParameterError, RisoriusWarning, ShapeError
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int32]
@@ -86,3 +87,17 @@ def one_of(name: str, value: str, choices: Mapping[str, Any] | tuple[str, ...]) 
     if value not in choices:
         raise ParameterError(f"{name}: {value!r} is not one of {', '.join(sorted(choices))}")
     return value
+
+
+def warn_of_strange_keys(
+    where: str, found: Collection[str], known: Collection[str], *, kind: str
+) -> None:
+    """Warn once of keys that mean nothing in a file of this `kind`; a misspelt one is lost."""
+    strange = sorted(set(found) - set(known))
+    if strange:
+        warnings.warn(
+            f"{where}: {', '.join(strange)} means nothing in {kind} and is ignored; it may have "
+            f"{', '.join(sorted(known))}",
+            RisoriusWarning,
+            stacklevel=3,
+        )

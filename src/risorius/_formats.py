@@ -76,8 +76,9 @@ def _find(path: Path, verb: str) -> Any:
             return function
         known.extend(file_format.endings)
     action, _, thing = verb.partition("_")
+    thing = thing if thing == "landmarks" else f"a {thing}"
     raise FormatError(
-        f"{path}: cannot {action} a {thing} with the ending {ending or '(none)'!r}; "
+        f"{path}: cannot {action} {thing} with the ending {ending or '(none)'!r}; "
         f"known: {' '.join(sorted(set(known)))}"
     )
 
@@ -86,7 +87,7 @@ def _existing(path: Path) -> Path:
     if path.is_dir():
         raise FormatError(f"{path}: is a folder, a file was expected")
     if not path.exists():
-        raise FormatError(f"{path}: no such file")
+        raise FormatError(f"{path}: no such file; check its name and its folder")
     return path
 
 

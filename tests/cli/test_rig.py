@@ -220,6 +220,8 @@ def test_notes_are_said_once_and_stand_in_the_answer(tmp_path: Path) -> None:
     ("options", "sentence"),
     [
         (["--part", "tongue"], "is not KIND=NAME"),
+        (["--part", "tongue=a", "--part", "tongue=b"], "contradict each other"),
+        (["--part", "tongue=a", "--part", "skin=a"], "contradict each other"),
         (["--method", "magic"], "'magic'"),
         (["--profile", "best"], "'best'"),
     ],

@@ -20,7 +20,7 @@ from risorius.controls import (
     resolve_pose,
     sided,
 )
-from risorius.errors import FormatError, ParameterError
+from risorius.errors import FormatError, ParameterError, RisoriusWarning
 
 BOOK = default_presets()
 ALL = [*device_controls(), *(c for m in (*MUSCLES, *SINGLE_MUSCLES) for c in muscle_controls(m))]
@@ -137,3 +137,8 @@ def test_a_file_that_breaks_the_schema_is_refused(changes: dict, message: str) -
 def test_a_value_that_is_no_finite_number_is_refused_by_place(value: object) -> None:
     with pytest.raises(ParameterError, match=r"^p: emotions\.joy: jaw_pitch: "):
         parse_presets(HEADER | {"emotions": {"joy": {"jaw_pitch": value}}}, source="p")
+
+
+def test_a_key_that_means_nothing_is_told() -> None:
+    with pytest.warns(RisoriusWarning, match="p: emotion means nothing in presets and is ignored"):
+        parse_presets(HEADER | {"emotion": {}}, source="p")

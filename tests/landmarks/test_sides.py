@@ -104,3 +104,13 @@ def test_required_landmarks_that_are_missing_are_named_with_the_purpose() -> Non
         "landmarks: the jaw needs 7.1 (top of the spine, where the head turns); wart; "
         "add them to the landmark file"
     )
+
+
+@pytest.mark.parametrize("turn", [0, 120])
+def test_inner_corners_of_the_eyes_outside_the_outer_ones_are_refused(turn: int) -> None:
+    points = landmark_points()
+    exchanged = {"3.7": "3.11", "3.11": "3.7", "3.12": "3.8", "3.8": "3.12"}
+    wrong = points | {name: points[other] for name, other in exchanged.items()}
+    rotation = Rotation.from_euler("y", turn, degrees=True).as_matrix()
+    with pytest.raises(LandmarkError, match=r"inner corners of the eyes .* lie farther apart"):
+        require_sides(landmark_set(wrong, rotation=rotation))

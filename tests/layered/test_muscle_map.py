@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from risorius.controls.standard import MUSCLES, SINGLE_MUSCLES
-from risorius.errors import FormatError, ParameterError
+from risorius.errors import FormatError, ParameterError, RisoriusWarning
 from risorius.layered.muscle import Sheet
 from risorius.layered.muscle_map import default_muscle_map, parse_muscle_map, read_muscle_map
 
@@ -108,3 +108,8 @@ def test_newer_version_is_refused(content: dict[str, Any]) -> None:
     content["version"] = 2
     with pytest.raises(FormatError, match="update risorius"):
         parse_muscle_map(content, source="map")
+
+
+def test_a_key_that_means_nothing_is_told(content: dict[str, Any]) -> None:
+    with pytest.warns(RisoriusWarning, match="map: muscels means nothing in a muscle map"):
+        parse_muscle_map(content | {"muscels": []}, source="map")

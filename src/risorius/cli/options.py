@@ -349,6 +349,13 @@ def as_parts(given: list[str] | None) -> dict[str, str]:
             raise typer.BadParameter(
                 f"{text!r} is not KIND=NAME, such as tongue=Object_7", param_hint="--part"
             )
+        for earlier, taken in result.items():
+            if (earlier == kind) != (taken == name):
+                raise typer.BadParameter(
+                    f"{earlier}={taken} and {kind}={name} contradict each other; a part is one "
+                    "object, group or material, and each of these is one part",
+                    param_hint="--part",
+                )
         result[kind] = name
     return result
 

@@ -12,7 +12,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, cast
 
-from risorius._check import as_number
+from risorius._check import as_number, warn_of_strange_keys
 from risorius.controls.arkit import arkit_shapes
 from risorius.controls.control import Control, Pose
 from risorius.controls.standard import bilateral, sided
@@ -26,6 +26,7 @@ EMOTIONS = ("joy", "sadness", "surprise", "anger", "fear", "disgust")
 
 SCHEMA = "risorius/presets"
 VERSION = 1
+_KEYS = ("schema", "version", "about", "fallbacks", "emotions", "arkit", *STANDARD_SETS)
 
 
 @dataclass(frozen=True)
@@ -149,6 +150,7 @@ def parse_presets(data: Mapping[str, Any], *, source: str) -> PresetBook:
             f"{source}: presets version {data.get('version')!r} is not {VERSION}; "
             "update risorius to read it"
         )
+    warn_of_strange_keys(source, data, _KEYS, kind="presets")
     emotions = {
         name: _expand(entry, f"{source}: emotions.{name}")
         for name, entry in _section(data, "emotions", source).items()

@@ -40,7 +40,7 @@ def read_bytes_limited(path: str | Path, *, limit: int = 512 * MEGABYTE) -> byte
     except IsADirectoryError:
         raise FormatError(f"{path}: is a folder, a file was expected") from None
     except FileNotFoundError:
-        raise FormatError(f"{path}: no such file") from None
+        raise FormatError(f"{path}: no such file; check its name and its folder") from None
     except (OSError, ValueError) as error:
         raise FormatError(f"{path}: cannot be read ({error})") from error
 

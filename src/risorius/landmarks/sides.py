@@ -59,7 +59,8 @@ def require_sides(landmarks: LandmarkSet) -> LandmarkSet:
     Raises
     ------
     LandmarkError
-        If more than half of the clear pairs are on the wrong side.
+        If more than half of the clear pairs are on the wrong side, or inner and outer corners of
+        an eye are exchanged.
     """
     pairs = _pairs(landmarks)
     facing = _facing(landmarks)
@@ -68,6 +69,7 @@ def require_sides(landmarks: LandmarkSet) -> LandmarkSet:
     up, forward = facing
     left = np.cross(up, forward)
     left /= np.linalg.norm(left)
+    _require_outer_corners(landmarks, left)
     eyes = abs(float((landmarks.position("3.7") - landmarks.position("3.12")) @ left))
     gaps = {
         pair: float((landmarks.position(pair[0]) - landmarks.position(pair[1])) @ left)
@@ -91,6 +93,20 @@ def require_sides(landmarks: LandmarkSet) -> LandmarkSet:
     )
     exchange = dict(wrong) | {b: a for a, b in wrong}
     return landmarks.renamed(exchange)
+
+
+def _require_outer_corners(landmarks: LandmarkSet, left: FloatArray) -> None:
+    """Refuse inner corners of the eyes that lie outside the outer ones, along `left` (3,)."""
+    names = ("3.7", "3.12", "3.11", "3.8")
+    if landmarks.missing(names):
+        return
+    across = landmarks.positions(names) @ left
+    outer, inner = abs(across[0] - across[1]), abs(across[2] - across[3])
+    if inner > outer:
+        raise LandmarkError(
+            "landmarks: the inner corners of the eyes ('3.11' and '3.8') lie farther apart than "
+            "the outer ones ('3.7' and '3.12'); exchange them in the landmark file"
+        )
 
 
 def _facing(landmarks: LandmarkSet) -> tuple[FloatArray, FloatArray] | None:

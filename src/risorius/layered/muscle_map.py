@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from risorius._check import FloatArray
+from risorius._check import FloatArray, warn_of_strange_keys
 from risorius.io.bounded import check_schema, read_json
 from risorius.io.json_fields import Fields
 from risorius.layered.layer_order import layer_order
@@ -29,6 +29,7 @@ __all__ = [
 
 SCHEMA = "risorius/muscle-map"
 VERSION = 1
+_KEYS = ("schema", "version", "about", "unit", "landmarks", "muscles")
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +91,7 @@ def parse_muscle_map(data: Mapping[str, Any], *, source: str) -> MuscleMap:
     """
     document = dict(data)
     check_schema(document, source, schema=SCHEMA, version=VERSION)
+    warn_of_strange_keys(source, document, _KEYS, kind="a muscle map")
     content = Fields(document, source)
     marks = content.fields("landmarks")
     landmarks = {name: np.array(marks.numbers(name, 3)) for name in marks}

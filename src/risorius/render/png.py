@@ -57,7 +57,7 @@ def read_png(path: str | Path) -> Uint8Array:
         with Image.open(path, formats=["PNG"]) as picture:
             return np.asarray(picture.convert("RGB"), dtype=np.uint8)
     except FileNotFoundError:
-        raise FormatError(f"{path}: no such file") from None
+        raise FormatError(f"{path}: no such file; check its name and its folder") from None
     except (UnidentifiedImageError, OSError, ValueError, SyntaxError) as error:
         raise FormatError(f"{path}: not a readable PNG file ({error}); export it again") from None
     except Image.DecompressionBombError as error:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -12,9 +11,9 @@ from typing import Any, cast
 
 import numpy as np
 
-from risorius._check import FloatArray
+from risorius._check import FloatArray, warn_of_strange_keys
 from risorius.anatomy.template import warp_between
-from risorius.errors import FormatError, RisoriusWarning
+from risorius.errors import FormatError
 from risorius.head.head import Head
 from risorius.vectormuscle import kinds as _kinds  # registers the muscle kinds
 from risorius.vectormuscle.muscle import KINDS, VectorMuscle, read_vector
@@ -98,14 +97,7 @@ def parse_vector_set(data: Mapping[str, Any], *, source: str) -> VectorSet:
             f"{source}: vector set version {data.get('version')!r} is not {VERSION}; "
             "update risorius to read it"
         )
-    strange = sorted(set(data) - _KEYS)
-    if strange:
-        warnings.warn(
-            f"{source}: {', '.join(strange)} means nothing in a vector set and is ignored; it may "
-            f"have {', '.join(sorted(_KEYS))}",
-            RisoriusWarning,
-            stacklevel=2,
-        )
+    warn_of_strange_keys(source, data, _KEYS, kind="a vector set")
     marks, entries = data.get("landmarks"), data.get("muscles")
     if not isinstance(marks, dict) or not isinstance(entries, list):
         raise FormatError(f"{source}: needs 'landmarks' (object) and 'muscles' (list)")

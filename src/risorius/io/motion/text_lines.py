@@ -39,7 +39,7 @@ def bounded_lines(path: Path) -> Iterator[tuple[int, str]]:
     except IsADirectoryError:
         raise FormatError(f"{path}: is a folder, a file was expected") from None
     except FileNotFoundError:
-        raise FormatError(f"{path}: no such file") from None
+        raise FormatError(f"{path}: no such file; check its name and its folder") from None
     except OSError as error:
         raise FormatError(f"{path}: cannot be read ({error})") from error
 
