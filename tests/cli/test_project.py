@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 from risorius import Rig
 from risorius.project import read_project
 from tests.cli.running import answer, asset, run
@@ -137,3 +139,23 @@ def test_a_landmark_file_is_no_project(tmp_path: Path) -> None:
     result = run("rig", asset("head.landmarks.json"), "-o", tmp_path / "f.glb")
     assert result.exit_code == 1
     assert 'expected "schema": "risorius/project", found "risorius/landmarks"' in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("method", "parameter", "sentence"),
+    [
+        ("vector", "steps=0.5", "parameters: steps"),
+        ("vector", "wobble=1", "the method 'vector' has no 'wobble'"),
+        ("layered", "wobble=1", "the method 'layered' has no 'wobble'"),
+        ("springs", "wobble=1", "the method 'springs' has no 'wobble'"),
+    ],
+)
+def test_show_refuses_parameters_that_the_method_does_not_have(
+    tmp_path: Path, method: str, parameter: str, sentence: str
+) -> None:
+    project = tmp_path / "mine.json"
+    run("project", "new", "builtin", "-o", project, "--method", method)
+    run("project", "set", project, "--parameter", parameter)
+    shown = run("project", "show", project)
+    assert shown.exit_code == 1
+    assert sentence in shown.stderr

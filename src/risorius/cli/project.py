@@ -160,15 +160,17 @@ def change(
 def show(
     project: ProjectFile, json: AsJson = False, quiet: Quiet = False, debug: Debug = False
 ) -> None:
-    """Show what a project says, and whether its files are there.
+    """Show what a project says, and whether its files are there; refuse wrong parameters.
 
     Example:  risorius project show head.json
     """
     with talking(json=json, quiet=quiet, debug=debug) as talk:
         from risorius.cli.keeping import describe
-        from risorius.project import read_project
+        from risorius.project import read_project, require_parameters
 
-        describe(read_project(project), talk)
+        found = read_project(project)
+        describe(found, talk)
+        require_parameters(found)
 
 
 @app.command("upgrade")

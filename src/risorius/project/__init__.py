@@ -7,6 +7,7 @@ from risorius.project.assemble import (
     read_mesh,
     read_presets,
     read_vector_set,
+    require_parameters,
     vectors_of,
 )
 from risorius.project.files import read_project, upgrade_project, write_project
@@ -24,6 +25,7 @@ __all__ = [
     "read_presets",
     "read_project",
     "read_vector_set",
+    "require_parameters",
     "upgrade_project",
     "vectors_of",
     "write_project",

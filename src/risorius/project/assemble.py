@@ -19,9 +19,9 @@ from risorius.io.json_fields import Fields
 from risorius.io.landmarks import landmarks_from_json
 from risorius.landmarks.landmark_set import LandmarkSpec
 from risorius.mesh.polygon_mesh import PolygonMesh
-from risorius.project.layered import layered_face
+from risorius.project.layered import layered_face, require_no_parameters
 from risorius.project.project import Project
-from risorius.project.springs import spring_face
+from risorius.project.springs import spring_face, spring_parameters
 from risorius.rig.face import Face
 from risorius.vectormuscle.face import Profile, VectorFace, VectorParameters
 from risorius.vectormuscle.vector_set import VectorSet, default_vector_set, parse_vector_set
@@ -34,6 +34,7 @@ __all__ = [
     "read_mesh",
     "read_presets",
     "read_vector_set",
+    "require_parameters",
     "vectors_of",
 ]
 
@@ -147,12 +148,30 @@ def face_of(project: Project, head: Head, *, mechanics: Mechanics | None = None)
     return BUILDERS[project.method](project, head, mechanics)
 
 
+def require_parameters(project: Project) -> None:
+    """Refuse parameters that the project's method does not have, without building a face.
+
+    Raises
+    ------
+    ParameterError
+        With the parameters that it has, or the range that a value leaves.
+    """
+    _PARAMETERS[project.method](project)
+
+
 def _vector_face(project: Project, head: Head, mechanics: Mechanics | None) -> Face:
-    parameters = _parameters(project)
+    parameters = vector_parameters(project)
     return VectorFace.build(head, vectors_of(project), mechanics=mechanics, parameters=parameters)
 
 
-def _parameters(project: Project) -> VectorParameters:
+def vector_parameters(project: Project) -> VectorParameters:
+    """Return the parameters of the profile with what the project changes.
+
+    Raises
+    ------
+    ParameterError
+        If the method does not have one, or its value is out of range.
+    """
     base = VectorParameters.of_profile(cast(Profile, project.profile))
     known = [entry.name for entry in fields(VectorParameters)]
     changed: dict[str, Any] = {}
@@ -186,3 +205,9 @@ BUILDERS: dict[str, Builder] = {
     "vector": _vector_face,
 }
 """How each method of `METHODS` is bound to a head."""
+
+_PARAMETERS: dict[str, Callable[[Project], object]] = {
+    "layered": require_no_parameters,
+    "springs": spring_parameters,
+    "vector": vector_parameters,
+}

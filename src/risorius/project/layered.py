@@ -17,7 +17,7 @@ from risorius.layered.muscle_map import (
 from risorius.project.project import Project
 from risorius.rig.face import Face
 
-__all__ = ["layered_face", "muscle_map_of", "skull_of"]
+__all__ = ["layered_face", "muscle_map_of", "require_no_parameters", "skull_of"]
 
 
 def muscle_map_of(project: Project) -> MuscleMap:
@@ -58,13 +58,24 @@ def layered_face(project: Project, head: Head, mechanics: Mechanics | None) -> F
     ParameterError
         If the project asks for a parameter that the method does not have.
     """
-    if project.parameters:
-        raise ParameterError(
-            f"parameters: the method {project.method!r} has no {next(iter(project.parameters))!r}; "
-            "its parameters stand in the muscle map (--muscle-map FILE)"
-        )
+    require_no_parameters(project)
     muscle_map = muscle_map_of(project)
     skull = skull_of(project, muscle_map)
     if project.profile == "faithful":
         return FaithfulFace.build(head, muscle_map, skull=skull, mechanics=mechanics)
     return LayeredFace.build(head, muscle_map, skull=skull, mechanics=mechanics)
+
+
+def require_no_parameters(project: Project) -> None:
+    """Refuse parameters, of which the layered face has none outside its map.
+
+    Raises
+    ------
+    ParameterError
+        If the project sets one.
+    """
+    if project.parameters:
+        raise ParameterError(
+            f"parameters: the method {project.method!r} has no {next(iter(project.parameters))!r}; "
+            "its parameters stand in the muscle map (--muscle-map FILE)"
+        )

@@ -20,7 +20,7 @@ from risorius.springmuscle.parameters import Profile, SpringParameters
 from risorius.springmuscle.recipe import OutlineRecipe
 from risorius.springmuscle.recipe_file import default_recipe, parse_recipe, read_recipe
 
-__all__ = ["recipe_of", "spring_face"]
+__all__ = ["recipe_of", "spring_face", "spring_parameters"]
 
 
 def recipe_of(project: Project) -> OutlineRecipe:
@@ -45,7 +45,7 @@ def spring_face(project: Project, head: Head, mechanics: Mechanics | None) -> Fa
     skull = _skull(project, way)
     return SpringFace.build(
         head, recipe_of(project), bones=cast(BoneWay, way), skull=skull, profile=profile,
-        mechanics=mechanics, parameters=_parameters(project, SpringParameters.of_profile(profile)),
+        mechanics=mechanics, parameters=spring_parameters(project),
     )  # fmt: skip
 
 
@@ -65,7 +65,15 @@ def _skull(project: Project, way: str) -> Skull | None:
     return None
 
 
-def _parameters(project: Project, base: SpringParameters) -> SpringParameters:
+def spring_parameters(project: Project) -> SpringParameters:
+    """Return the parameters of the profile with what the project changes.
+
+    Raises
+    ------
+    ParameterError
+        If the method does not have one, or its value is no such number.
+    """
+    base = SpringParameters.of_profile(cast(Profile, project.profile))
     numbers = {
         entry.name: getattr(base, entry.name)
         for entry in fields(base)
