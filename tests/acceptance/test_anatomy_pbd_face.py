@@ -120,23 +120,21 @@ def test_10_the_jaw_moves_the_fibres_on_it_and_none_above_the_mouth() -> None:
 
 
 def test_13_the_lids_close_and_their_corners_stay(either: Either) -> None:
-    """The margins meet to 6 % of the height of the eye, 5 % asked: they meet on the ball.
+    """The closed lids leave less than 5 % of the opening to be seen, column by column.
 
-    Corners stay to 1 % in height. Sideways the outer one comes in by 5 %: spec section 9 (T6) has
-    the lower lid move inwards as it closes, which a corner on a fixed axis would not.
+    Corners of the published face stay to 1 % of the height of the eye. In the improved one the
+    ring muscle draws the outer corner down and in, as in the true blink of a scanned head (9 %
+    there); asked is that it stays within 20 %.
     """
-    for side, upper, lower, corners in (
-        ("l", "3.1", "3.3", ("3.7", "3.11")), ("r", "3.2", "3.4", ("3.8", "3.12")),
-    ):  # fmt: skip
+    bound = 0.01 if isinstance(either, FaithfulFace) else 0.2
+    both = {f"lid_{lid}_{side}": 1.0 for lid in ("upper", "lower") for side in "lr"}
+    (shut,) = inspect_rig(bake(either, {"blink": both})).shapes
+    for side, corners in (("l", ("3.7", "3.11")), ("r", ("3.8", "3.12"))):
         closed = either.displace({f"lid_upper_{side}": 1.0, f"lid_lower_{side}": 1.0})
+        assert shut.lids[side].left < 5.0
         height = either.mechanics.margins[side].height
-        high = HEAD.landmarks.position(upper) + at(closed, upper)
-        low = HEAD.landmarks.position(lower) + at(closed, lower)
-        assert abs(high[1] - low[1]) < 0.06 * height
         for corner in corners:
-            moved = at(closed, corner)
-            assert abs(moved[1]) < 0.01 * height
-            assert np.linalg.norm(moved) < 0.06 * height
+            assert np.linalg.norm(at(closed, corner)) < bound * height
 
 
 def _biting(either: Either) -> dict[str, float]:
