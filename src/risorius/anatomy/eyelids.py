@@ -23,9 +23,12 @@ class LidParameters:
     Parameters
     ----------
     upper_band, lower_band : float
-        Width of the skin that follows the margins, in openings of the eye.
+        Width of the skin that follows the margins of closing lids, in openings of the eye.
     inner_band : float
         The same behind the margins.
+    plate, crease : float
+        An opening upper lid rises as one piece up to the first and stretches up to the second
+        distance from its margin, in openings of the eye: the levator lifts the tarsal plate.
     lower_share : float
         Share of the opening that the lower lid closes (spec: 15 %).
     wide : float
@@ -40,11 +43,13 @@ class LidParameters:
         Share of the eye's width over which the lids come to rest at the corners.
     """
 
-    upper_band: float = 1.05
+    upper_band: float = 0.8
     lower_band: float = 0.8
     inner_band: float = 0.6
+    plate: float = 0.45
+    crease: float = 1.05
     lower_share: float = 0.15
-    wide: float = 0.22
+    wide: float = 0.28
     lower_drop: float = 0.12
     axis_depth: float = 0.38
     clearance: float = 0.25
@@ -64,7 +69,9 @@ class Eyelids:
     place : (k,) float64
         Place along the eye, 0 inner to 1 outer corner.
     weight : (k,) float64
-        How far a vertex follows its margin, 1 at the margin.
+        How far a vertex follows its closing margin, 1 at the margin.
+    lifted : (k,) float64
+        The same for an opening lid.
     closing : (k,) float64
         Angle from the vertex's margin to the line where the lids meet, at its place [rad].
     opening : (k,) float64
@@ -82,6 +89,7 @@ class Eyelids:
     upper: BoolArray
     place: FloatArray
     weight: FloatArray
+    lifted: FloatArray
     closing: FloatArray
     opening: FloatArray
     centre: FloatArray
@@ -93,9 +101,10 @@ class Eyelids:
     def angles(self, *, upper: float, lower: float) -> FloatArray:
         """Return the turn (k,) [rad] of each lid vertex for lid controls in [-1, 1]."""
         p = self.parameters
-        down = upper * self.closing if upper >= 0.0 else upper * p.wide * self.opening
-        up = lower * self.closing if lower >= 0.0 else -lower * p.lower_drop * self.opening
-        return self.weight * np.where(self.upper, down, up)
+        close, lift = self.weight * self.closing, self.lifted * self.opening
+        down = upper * (close if upper >= 0.0 else p.wide * lift)
+        up = lower * close if lower >= 0.0 else -lower * p.lower_drop * lift
+        return np.where(self.upper, down, up)
 
     def move(
         self,
@@ -213,10 +222,13 @@ def build_eyelids(
     band = np.where(inside, p.inner_band * margins.height, band)
     flat = 0.06 * margins.height
     weight = 1.0 - smooth_step((margins.distance - flat) / np.maximum(band - flat, 1e-9))
-    weight[~np.isfinite(margins.distance)] = 0.0
+    beyond = margins.distance - p.plate * margins.height
+    lifted = 1.0 - smooth_step(beyond / np.maximum((p.crease - p.plate) * margins.height, 1e-9))
+    lifted = np.where(on_upper & ~inside, lifted, weight)
     beside = np.clip(1.0 - np.maximum(-place, place - 1.0) / 0.12, 0.0, 1.0)
-    weight = weight * smooth_step(beside) * (arm[:, 2] > 0.0)
-    vertices = np.flatnonzero(weight > 1e-6).astype(np.int32)
+    near = smooth_step(beside) * (arm[:, 2] > 0.0) * np.isfinite(margins.distance)
+    weight, lifted = near * np.nan_to_num(weight), near * np.nan_to_num(lifted)
+    vertices = np.flatnonzero(np.maximum(weight, lifted) > 1e-6).astype(np.int32)
     meet = p.lower_share * opening
     # Towards the corners the lids come to rest, or their skin would fold over the canthus.
     ends = smooth_step(np.minimum(place, 1.0 - place) / p.corner_rest)
@@ -227,6 +239,6 @@ def build_eyelids(
         rest = np.linalg.norm(arm[vertices], axis=1) - surface.radius(arm[vertices])
         floor = np.minimum(rest, p.clearance)
     return Eyelids(
-        vertices, on_upper[vertices], place[vertices], weight[vertices], closing[vertices],
-        opening[vertices], centre, axis, floor, surface, p,
+        vertices, on_upper[vertices], place[vertices], weight[vertices], lifted[vertices],
+        closing[vertices], opening[vertices], centre, axis, floor, surface, p,
     )  # fmt: skip
