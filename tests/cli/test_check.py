@@ -82,7 +82,7 @@ def test_every_required_landmark_is_needed_in_truth(tmp_path: Path) -> None:
 def test_a_missing_file_is_an_error_and_no_verdict() -> None:
     result = run("check", "none.obj")
     assert result.exit_code == 1
-    assert result.stderr == "risorius: none.obj: no such file\n"
+    assert result.stderr == "risorius: none.obj: no such file; check its name and its folder\n"
 
 
 @pytest.mark.real

@@ -70,4 +70,4 @@ def test_a_limit_without_number_is_a_wrong_command(rig_file: Path) -> None:
 def test_a_missing_rig_is_refused() -> None:
     result = run("inspect", "none.glb")
     assert result.exit_code == 1
-    assert result.stderr == "risorius: none.glb: no such file\n"
+    assert result.stderr == "risorius: none.glb: no such file; check its name and its folder\n"

@@ -96,7 +96,7 @@ def test_an_error_is_in_the_json_too() -> None:
     result = run("inspect", "none.glb", "--json")
     told = answer(result)
     assert told == {"ok": False, "notes": [], "seconds": told["seconds"], "error": told["error"]}
-    assert told["error"] == "none.glb: no such file"
+    assert told["error"] == "none.glb: no such file; check its name and its folder"
     assert result.exit_code == 1
 
 
