@@ -94,6 +94,20 @@ def test_a_wide_eye_opens_upwards_and_downwards() -> None:
     assert moved[lower, 1] < REST[lower, 1] - 0.5
 
 
+def test_an_opening_upper_lid_rises_as_one_plate_and_a_closing_one_stretches() -> None:
+    margins, p = _margins(), LIDS.parameters
+    away = margins.distance[LIDS.vertices] / margins.height
+    middle = LIDS.upper & ~SHEET.inside[LIDS.vertices] & (np.abs(LIDS.place - 0.5) < 0.35)
+    plate, beyond = middle & (away < p.plate), middle & (away > 1.001 * p.crease)
+    width = np.maximum(LIDS.opening, 1e-9)
+    opened = LIDS.angles(upper=-1.0, lower=0.0) / width
+    closed = LIDS.angles(upper=1.0, lower=0.0) / width
+    assert plate.sum() > 10
+    np.testing.assert_allclose(opened[plate], -p.wide, rtol=1e-9)
+    assert np.ptp(closed[plate]) > 0.1 * closed[plate].max()
+    assert not opened[beyond].any()
+
+
 def test_skin_beyond_the_band_keeps_still() -> None:
     parameters = LidParameters(upper_band=0.6, lower_band=0.4)
     narrow = _lids(parameters)

@@ -2,50 +2,37 @@
 
 from __future__ import annotations
 
-import warnings
 from functools import cache
-from pathlib import Path
 
 import pytest
 
 from risorius.anatomy.template import builtin_head
 from risorius.controls.presets import default_presets
-from risorius.errors import RisoriusWarning
 from risorius.head import Head
 from risorius.vectormuscle import VectorFace
 from risorius.vectormuscle.export import Export
 from risorius.vectormuscle.export_lips import compare_lips, opened_lips
 from risorius.vectormuscle.kinds import LinearMuscle
+from tests.real.heads import real_head
 
 pytestmark = pytest.mark.real
 
-_FILES = {
-    "ict": "ict_facekit/ict_neutral.obj",
-    "makehuman": "makehuman_head/caucasian_male_young.obj",
-}
-WAYS = [("builtin", "ict"), ("ict", "makehuman"), ("makehuman", "builtin")]
+WAYS = [("builtin", "ict"), ("ict", "caucasian_male_young"), ("caucasian_male_young", "builtin")]
+
+
+def _head(name: str) -> Head:
+    return builtin_head() if name == "builtin" else real_head(name)
 
 
 @cache
-def _head(name: str, folder: Path) -> Head:
-    if name == "builtin":
-        return builtin_head()
-    path = folder / _FILES[name]
-    with warnings.catch_warnings():
-        # Two pairs of the landmark files are exchanged; the reader says so.
-        warnings.simplefilter("ignore", RisoriusWarning)
-        return Head.load(path, path.with_name("landmarks.json"))
-
-
-@cache
-def _carried(source: str, target: str, folder: Path) -> VectorFace:
-    export = Export.begin(_head(source, folder), _head(target, folder))
+def _carried(source: str, target: str) -> VectorFace:
+    export = Export.begin(_head(source), _head(target))
     return VectorFace.build(export.target, export.vector_set())
 
 
 @pytest.fixture(params=WAYS, ids="-".join)
-def face(request: pytest.FixtureRequest, real_data: Path) -> VectorFace:
-    return _carried(*request.param, real_data)
+def face(request: pytest.FixtureRequest) -> VectorFace:
+    return _carried(*request.param)
 
 
 _WAYS = {

@@ -5,37 +5,28 @@ from __future__ import annotations
 import warnings
 from functools import cache
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from risorius.errors import RisoriusWarning
-from risorius.head import Head
 from risorius.layered import LayeredFace
 from tests.layered.eye_depth import depth_added
+from tests.real.heads import REAL_HEADS, real_head
 
 pytestmark = pytest.mark.real
 
-HEADS = (
-    "ict_facekit/ict_neutral.obj",
-    "makehuman_head/african_female_young.obj",
-    "makehuman_head/asian_male_old.obj",
-    "makehuman_head/caucasian_male_young.obj",
-)
-
 
 @cache
-def _build(path: Path) -> LayeredFace:
+def _build(name: str) -> LayeredFace:
     with warnings.catch_warnings():
-        # Two pairs of the landmark files are exchanged; the reader says so.
         warnings.simplefilter("ignore", RisoriusWarning)
-        return LayeredFace.build(Head.load(path, path.with_name("landmarks.json")))
+        return LayeredFace.build(real_head(name))
 
 
-@pytest.fixture(params=HEADS, ids=lambda name: Path(name).stem)
-def face(request: pytest.FixtureRequest, real_data: Path) -> LayeredFace:
-    return _build(real_data / request.param)
+@pytest.fixture(params=REAL_HEADS)
+def face(request: pytest.FixtureRequest) -> LayeredFace:
+    return _build(request.param)
 
 
 def test_no_gaze_drives_the_eye_into_its_lids(face: LayeredFace) -> None:

@@ -11,29 +11,20 @@ import pytest
 from risorius.controls.presets import default_presets
 from risorius.controls.shape_sets import list_shapes
 from risorius.errors import RisoriusWarning
-from risorius.head import Head
 from risorius.rig.bake import bake
 from risorius.rig.quality.bar import shortcomings
 from risorius.rig.quality.inspection import inspect_rig
 from risorius.springmuscle.face import SpringFace
-from tests.tools import real_data_folder
+from tests.real.heads import REAL_HEADS, real_head
 
 pytestmark = pytest.mark.real
-HEADS = {
-    "ict": ("ict_facekit/ict_neutral.obj", "ict_facekit/landmarks.json"),
-    **{
-        name: (f"makehuman_head/{name}.obj", "makehuman_head/landmarks.json")
-        for name in ("african_female_young", "asian_male_old", "caucasian_male_young")
-    },
-}
 
 
 @cache
 def _face(name: str) -> SpringFace:
-    mesh, landmarks = (real_data_folder() / path for path in HEADS[name])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RisoriusWarning)
-        return SpringFace.build(Head.load(mesh, landmarks))
+        return SpringFace.build(real_head(name))
 
 
 def _emotions(face: SpringFace) -> dict[str, dict[str, float]]:
@@ -41,7 +32,7 @@ def _emotions(face: SpringFace) -> dict[str, dict[str, float]]:
     return {name: dict(pose) for name, pose in poses.items()}
 
 
-@pytest.mark.parametrize("name", HEADS)
+@pytest.mark.parametrize("name", REAL_HEADS)
 def test_emotions_and_muscles_pass_the_bar_of_inspect(name: str) -> None:
     face = _face(name)
     muscles = [control.name for control in face.controls if control.group == "muscle"]
@@ -58,7 +49,7 @@ def test_emotions_and_muscles_pass_the_bar_of_inspect(name: str) -> None:
             assert max(gap.left for gap in shape.lids.values()) < 5.0
 
 
-@pytest.mark.parametrize("name", HEADS)
+@pytest.mark.parametrize("name", REAL_HEADS)
 def test_emotions_are_far_apart_and_symmetric(name: str) -> None:
     face = _face(name)
     fields = {n: face.displace(pose).ravel() for n, pose in _emotions(face).items()}

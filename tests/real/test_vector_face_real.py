@@ -4,38 +4,29 @@ from __future__ import annotations
 
 import warnings
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 
 from risorius.errors import RisoriusWarning
-from risorius.head import Head
 from risorius.head.eyes import EYE_LANDMARKS
 from risorius.vectormuscle import VectorFace
+from tests.real.heads import REAL_HEADS, real_head
 
 pytestmark = pytest.mark.real
 
-HEADS = (
-    "ict_facekit/ict_neutral.obj",
-    "makehuman_head/african_female_young.obj",
-    "makehuman_head/asian_male_old.obj",
-    "makehuman_head/caucasian_male_young.obj",
-)
-
 
 @cache
-def _build(path: Path) -> VectorFace:
+def _build(name: str) -> VectorFace:
     with warnings.catch_warnings():
-        # Two pairs of the landmark files are exchanged; the reader says so.
         warnings.simplefilter("ignore", RisoriusWarning)
-        return VectorFace.build(Head.load(path, path.with_name("landmarks.json")))
+        return VectorFace.build(real_head(name))
 
 
-@pytest.fixture(params=HEADS, ids=lambda name: Path(name).stem)
-def face(request: pytest.FixtureRequest, real_data: Path) -> VectorFace:
-    return _build(real_data / request.param)
+@pytest.fixture(params=REAL_HEADS)
+def face(request: pytest.FixtureRequest) -> VectorFace:
+    return _build(request.param)
 
 
 def _skin(face: VectorFace, pose: dict[str, float]) -> npt.NDArray[np.float64]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -44,9 +46,11 @@ _REFUSED = [
 
 
 @pytest.mark.parametrize(("build", "error", "message"), _REFUSED)
-def test_refusal_says_what_is_wrong(build: object, error: type[Exception], message: str) -> None:
+def test_refusal_says_what_is_wrong(
+    build: Callable[[], object], error: type[Exception], message: str
+) -> None:
     with pytest.raises(error, match=message):
-        build()  # type: ignore[operator]
+        build()
 
 
 def test_one_stiffness_serves_all_rows() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from typing import cast
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from risorius.controls.shape_sets import list_shapes
 from risorius.errors import ParameterError
 from risorius.rig.bake import bake
 from risorius.rig.quality.inspection import inspect_rig
+from risorius.springmuscle.bones import BoneWay
 from risorius.springmuscle.contraction import Contraction
 from risorius.springmuscle.face import SpringFace
 from risorius.springmuscle.measure import FaceMeasure
@@ -230,7 +232,7 @@ def test_the_published_face_settles_and_goes_the_same_way(name: str) -> None:
 
 def test_ways_to_bones_that_do_not_exist_are_refused() -> None:
     with pytest.raises(ParameterError, match="bones"):
-        SpringFace.build(builtin_head(), mechanics=builtin_mechanics(), bones="own")  # type: ignore[arg-type]
+        SpringFace.build(builtin_head(), mechanics=builtin_mechanics(), bones=cast(BoneWay, "own"))
 
 
 def test_mechanics_are_used_as_given() -> None:

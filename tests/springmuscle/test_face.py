@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from risorius.rig.face import Face
 from risorius.solvers.leapfrog import LeapfrogParameters, forces_at, settle
 from risorius.solvers.springs import SpringControl, SpringState
 from risorius.springmuscle.face import SpringFace
-from risorius.springmuscle.parameters import SpringParameters
+from risorius.springmuscle.parameters import Profile, SpringParameters
 from risorius.springmuscle.relax import start_of
 from tests.springmuscle.faces import SMILE, builtin_mechanics, smiling
 
@@ -217,7 +218,7 @@ def test_poses_that_cannot_be_are_refused() -> None:
     with pytest.raises(ParameterError, match="zygomaticus"):
         smiling().displace({"zygomaticus": 1.0})
     with pytest.raises(ParameterError, match="profile"):
-        SpringParameters.of_profile("loose")  # type: ignore[arg-type]
+        SpringParameters.of_profile(cast(Profile, "loose"))
 
 
 @pytest.mark.parametrize(

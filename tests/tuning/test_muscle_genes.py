@@ -129,7 +129,10 @@ def test_a_style_survives_its_file_and_tunes_the_next_head(tmp_path) -> None:
     ("change", "sentence"),
     [
         ({"schema": "risorius/vector-set"}, 'expected "schema": "risorius/style"'),
-        ({"version": 2}, "style version 2 is not 1; update risorius"),
+        (
+            {"version": 2},
+            "written in version 2 of risorius/style",
+        ),
         ({"parameters": [1]}, "'parameters' must be an object"),
         ({"method": 3}, "'method' must be a word"),
     ],

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import stat
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn, cast
 
@@ -80,7 +80,7 @@ def read_json(
     return result
 
 
-def check_schema(document: dict[str, Any], where: str, *, schema: str, version: int) -> None:
+def check_schema(document: Mapping[str, Any], where: str, *, schema: str, version: int) -> None:
     """Refuse a document of another schema or of a newer version."""
     found = document.get("schema")
     if found != schema:

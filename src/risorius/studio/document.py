@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -163,12 +164,12 @@ class Document:
             If the file or something that it names is refused, or another studio has it open.
         """
         keeper = Keeper.take(path)
-        try:
+        with ExitStack() as refused:
+            refused.callback(keeper.release)
             found = keeper.read() or project or Project()
-            return Document(keeper, found, work_of(found))
-        except BaseException:
-            keeper.release()
-            raise
+            document = Document(keeper, found, work_of(found))
+            refused.pop_all()
+        return document
 
     @property
     def work(self) -> Work:

@@ -11,7 +11,7 @@ from typing import Any, cast
 from risorius._check import as_number
 from risorius.errors import FormatError
 from risorius.io.atomic import write_bytes
-from risorius.io.bounded import read_json
+from risorius.io.bounded import check_schema, read_json
 from risorius.tuning.muscle_genes import apply_genes, muscle_parameters
 from risorius.vectormuscle.muscle import VectorMuscle
 
@@ -83,13 +83,7 @@ def parse_style(data: Mapping[str, Any], *, source: str) -> Style:
     ParameterError
         If a value is not a finite number.
     """
-    if data.get("schema") != SCHEMA:
-        raise FormatError(f'{source}: expected "schema": "{SCHEMA}", got {data.get("schema")!r}')
-    if data.get("version") != VERSION:
-        raise FormatError(
-            f"{source}: style version {data.get('version')!r} is not {VERSION}; update risorius "
-            "to read it"
-        )
+    check_schema(data, source, schema=SCHEMA, version=VERSION)
     parameters = data.get("parameters")
     if not isinstance(parameters, dict):
         raise FormatError(f"{source}: 'parameters' must be an object of name: number")

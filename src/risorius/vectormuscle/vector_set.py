@@ -15,6 +15,7 @@ from risorius._check import FloatArray, warn_of_strange_keys
 from risorius.anatomy.template import warp_between
 from risorius.errors import FormatError
 from risorius.head.head import Head
+from risorius.io.bounded import check_schema
 from risorius.vectormuscle import kinds as _kinds  # registers the muscle kinds
 from risorius.vectormuscle.muscle import KINDS, VectorMuscle, read_vector
 
@@ -90,13 +91,7 @@ def parse_vector_set(data: Mapping[str, Any], *, source: str) -> VectorSet:
     ParameterError
         If a number of a muscle is out of range.
     """
-    if data.get("schema") != SCHEMA:
-        raise FormatError(f'{source}: expected "schema": "{SCHEMA}", got {data.get("schema")!r}')
-    if data.get("version") != VERSION:
-        raise FormatError(
-            f"{source}: vector set version {data.get('version')!r} is not {VERSION}; "
-            "update risorius to read it"
-        )
+    check_schema(data, source, schema=SCHEMA, version=VERSION)
     warn_of_strange_keys(source, data, _KEYS, kind="a vector set")
     marks, entries = data.get("landmarks"), data.get("muscles")
     if not isinstance(marks, dict) or not isinstance(entries, list):
