@@ -9,8 +9,12 @@ from itertools import product
 import numpy as np
 import pytest
 
+from risorius.controls.presets import default_presets
+from risorius.controls.shape_sets import list_shapes
 from risorius.errors import RisoriusWarning
 from risorius.layered import LayeredFace
+from risorius.mesh.core import TriMesh
+from risorius.spatial.raycast import Scene
 from tests.layered.eye_depth import depth_added
 from tests.real.heads import REAL_HEADS, real_head
 
@@ -48,3 +52,19 @@ def test_extreme_poses_are_finite_and_end_where_they_began(face: LayeredFace) ->
         assert np.isfinite(moved).all()
         assert np.linalg.norm(moved, axis=1).max() < 90.0
     assert not face.displace({}).any()
+
+
+@pytest.mark.parametrize("shape", ["mouthPucker", "mouthRollUpper"])
+def test_no_lining_of_the_mouth_shows_through_the_upper_lip(face: LayeredFace, shape: str) -> None:
+    pose = list_shapes(face.controls, default_presets(), sets=("arkit",)).poses[shape]
+    mesh, skin = face.head.skin.mesh, face.skin
+    posed = mesh.positions + face.displace(pose)[face.head.skin.first_source()]
+    marks = face.head.landmarks
+    right, left = marks.position("2.5")[0], marks.position("2.4")[0]
+    low, high = marks.position("2.2")[1] + 3.0, marks.position("9.3")[1]
+    across, up = np.meshgrid(np.linspace(right, left, 60), np.linspace(low, high, 40))
+    before = np.stack([across, up, np.full_like(up, posed[:, 2].max() + 10.0)], axis=-1)
+    hits = Scene([TriMesh(posed, mesh.faces)]).cast(before.reshape(-1, 3), (0.0, 0.0, -1.0))
+    seen = mesh.faces[hits.face[hits.hit]]
+    deep = skin.hidden & (face.mechanics.lips.distance > 5.0)
+    assert not deep[seen].all(axis=1).any()

@@ -1,4 +1,4 @@
-"""Contact of the posed skin with teeth, eyeballs and of the lips with each other."""
+"""Contact of the posed skin with teeth and eyeballs, of lips with lips, of lining with skin."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.jaw import JawPose
 from risorius.anatomy.kernels.hull_push import hull_shortfall
+from risorius.anatomy.lining_contact import LiningContact
 from risorius.anatomy.lip_contact import LipContact
 from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.outwards import unit
@@ -87,6 +88,7 @@ class Contact:
     eyes : tuple
         Eyeballs and the skin round them.
     lips : LipContact
+    lining : LiningContact
     """
 
     skin: Skin
@@ -97,6 +99,7 @@ class Contact:
     arches: Mapping[str, _Arch]
     eyes: tuple[_Eye, ...]
     lips: LipContact
+    lining: LiningContact
 
     @staticmethod
     def build(skin: Skin, mechanics: Mechanics) -> Contact:
@@ -125,6 +128,7 @@ class Contact:
             arches,
             eyes,
             LipContact.build(skin, mechanics.lips),
+            LiningContact.build(skin, mechanics.lips),
         )
 
     def resolve(self, moved: FloatArray, values: Mapping[str, float]) -> FloatArray:
@@ -145,7 +149,7 @@ class Contact:
             yaw = values.get(f"gaze_yaw_{eye.side}", 0.0)
             pitch = values.get(f"gaze_pitch_{eye.side}", 0.0)
             moved = self._clear_eye(moved, eye, yaw=yaw, pitch=pitch)
-        return moved
+        return self.lining.hold_back(moved)
 
     def _jaw(self, values: Mapping[str, float]) -> tuple[FloatArray, FloatArray] | None:
         """Return rotation (3, 3) and shift (3,) of the jaw, None at rest."""
