@@ -165,3 +165,31 @@ def test_without_the_extra_the_message_says_what_to_install(tmp_path: Path):
     )
     assert run.returncode != 0
     assert "pip install risorius[usd]" in run.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit of the size of files there")
+@pytest.mark.parametrize("ending", ["usdc", "usda", "usdz"])
+def test_a_full_disk_is_told_in_one_sentence(pxr: Any, tmp_path: Path, ending: str):
+    code = (
+        "import resource, signal\n"
+        "from risorius.errors import FormatError\n"
+        "from risorius.io.usd import write_usd\n"
+        "from tests.io.rigs import make_rig\n"
+        "rig = make_rig()\n"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (512, 512))\n"
+        "try:\n"
+        f"    write_usd(rig, {str(tmp_path / f'a.{ending}')!r})\n"
+        "except FormatError as error:\n"
+        "    print(error)\n"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    assert "cannot write the file" in run.stdout and "room on the disk" in run.stdout
+    assert run.stdout.count("\n") == 1 and "Error in" not in run.stdout
+    assert not list(tmp_path.iterdir())

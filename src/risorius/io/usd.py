@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import tempfile
 from importlib import import_module
 from pathlib import Path
@@ -34,6 +35,7 @@ __all__ = ["write_usd"]
 
 _ROOT = "/Head"
 _MILLIMETRES_PER_METRE = 1000.0
+_REASON = re.compile(r" : '(.*)'")
 _EPOCH = 400_000_000  # a day in 1982: archives keep the time of their files, ours shall not
 
 
@@ -87,9 +89,16 @@ def write_usd(
                 inner = pxr.Sdf.AssetPath(str(file))
                 done = pxr.UsdUtils.CreateNewUsdzPackage(inner, str(temporary))
         except RuntimeError as error:
-            raise FormatError(f"{path}: the USD library refuses ({error})") from error
+            raise FormatError(_refusal(path, str(error))) from error
         if not done:
-            raise FormatError(f"{path}: the USD library could not write the file")
+            raise FormatError(_refusal(path, ""))
+
+
+def _refusal(path: Path, dump: str) -> str:
+    """Return one sentence for the library's `dump`, which has a line of its source per error."""
+    reasons = list(dict.fromkeys(_REASON.findall(dump)))[:2]
+    told = f" ({'; '.join(reasons)})" if reasons else ""
+    return f"{path}: the USD library cannot write the file{told}; is there room on the disk?"
 
 
 def _library() -> Any:
