@@ -71,3 +71,35 @@ def test_a_missing_rig_is_refused() -> None:
     result = run("inspect", "none.glb")
     assert result.exit_code == 1
     assert result.stderr == "risorius: none.glb: no such file; check its name and its folder\n"
+
+
+def test_shapes_added_up_are_measured_too(rig_file: Path) -> None:
+    told = answer(
+        run("inspect", rig_file, *GENEROUS, "--sum", "jawOpen=0.5+eyeBlinkLeft", "--sum", "played",
+            "--json")
+    )  # fmt: skip
+    shapes = {shape["name"]: shape for shape in told["report"]["shapes"]}
+    both = shapes["jawOpen=0.5+eyeBlinkLeft"]
+    assert both["lids"]["l"]["left"] == pytest.approx(shapes["eyeBlinkLeft"]["lids"]["l"]["left"])
+    assert both["motion"]["largest"] == pytest.approx(
+        0.5 * shapes["jawOpen"]["motion"]["largest"], rel=0.05
+    )
+    assert "eyeBlinkLeft+eyeLookUpLeft" in shapes
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("jawOpen", "is one shape"),
+        ("jawOpen+", "not of the form"),
+        ("jawOpen+jawOpen", "not of the form"),
+        ("jawOpen=much+eyeBlinkLeft", "'much' is no number"),
+        ("jawOpen=nan+eyeBlinkLeft", "jawOpen"),
+        ("jawOpen+beauty", "no target 'beauty'"),
+    ],
+)
+def test_a_sum_that_makes_no_sense_is_refused(rig_file: Path, text: str, told: str) -> None:
+    result = run("inspect", rig_file, "--sum", text)
+    assert result.exit_code != 0
+    assert told in result.stderr
+    assert "Traceback" not in result.stderr

@@ -24,6 +24,17 @@ def inspect(
         ),
     ],
     landmarks: LandmarkFile = None,
+    together: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--sum",
+            metavar="A+B",
+            help="Also measure shapes added up, as engines do: A+B, A=0.5+B; repeatable. 'played' "
+            "stands for sums that takes of real faces are full of, such as a blink while looking "
+            "aside.",
+            show_default=False,
+        ),
+    ] = None,
     sort: Annotated[
         str | None,
         typer.Option(
@@ -62,11 +73,16 @@ def inspect(
     with talking(json=json, quiet=quiet, debug=debug) as talk:
         from risorius.cli.quality_table import beyond, limits, show
         from risorius.cli.sources import load_rig
-        from risorius.rig.quality import inspect_rig
+        from risorius.rig.quality import inspect_rig, played_sums, with_sums
 
         bars = limits(bar)
         with talk.stage("read"):
             loaded = load_rig(rig, landmarks)
+        wanted = together or []
+        sums = [text for text in wanted if text != "played"]
+        if len(sums) < len(wanted):
+            sums.extend(played_sums(loaded))
+        loaded = with_sums(loaded, sums)
         with talk.stage("measure") as tick:
             report = inspect_rig(loaded, progress=tick)
         for note in report.notes:
