@@ -18,9 +18,9 @@ from risorius.mesh.core import TriMesh
 from risorius.render.colours import display_rgb
 from risorius.render.materials import colour_of_material, eye_paint
 from risorius.springmuscle.face import SpringFace
-from risorius.studio.spring_shapes import SpringShapes
+from risorius.studio.drawing.spring_bodies import SpringBodies
+from risorius.studio.drawing.vector_bodies import vector_bodies
 from risorius.studio.subject import Subject
-from risorius.studio.vector_shapes import vector_shapes
 
 __all__ = ["GROUPS", "SceneMesh", "Stage", "stage_of"]
 
@@ -64,7 +64,7 @@ class Stage:
 
     subject: Subject
     meshes: tuple[SceneMesh, ...]
-    _shapes: MuscleShapes | SpringShapes | None
+    _shapes: MuscleShapes | SpringBodies | None
 
     def mesh(self, name: str) -> SceneMesh | None:
         """Return the mesh called `name`, or None."""
@@ -88,7 +88,7 @@ class Stage:
             values = resolve_pose(subject.face.controls, pose).values
             jaw = JawPose(*(values.get(f"jaw_{n}", 0.0) for n in ("pitch", "yaw", "protrusion")))
             result["mandible"] = subject.mechanics.jaw.move(subject.fitted.mandible.positions, jaw)
-        if "muscles" in groups and isinstance(self._shapes, SpringShapes):
+        if "muscles" in groups and isinstance(self._shapes, SpringBodies):
             result |= self._shapes.posed(pose)
         elif "muscles" in groups and isinstance(self._shapes, MuscleShapes):
             result |= self._shapes.posed(pose, positions)
@@ -115,10 +115,10 @@ def stage_of(subject: Subject, before: Stage | None = None) -> Stage:
         shapes = MuscleShapes.of(subject.bench.face, subject.space)
         bodies = shapes.meshes
     elif isinstance(subject.face, SpringFace):
-        shapes = SpringShapes.of(subject.face)
+        shapes = SpringBodies.of(subject.face)
         bodies = shapes.meshes
     elif subject.vector_face is not None:
-        bodies = vector_shapes(subject.vector_face)
+        bodies = vector_bodies(subject.vector_face)
     muscles = tuple(
         SceneMesh(name, "muscles", mesh, _muscle_colour(mesh)) for name, mesh in bodies.items()
     )

@@ -14,11 +14,11 @@ from risorius.mesh.core import TriMesh
 from risorius.springmuscle.contraction import Contraction
 from risorius.springmuscle.face import SpringFace
 
-__all__ = ["SpringShapes"]
+__all__ = ["SpringBodies"]
 
 
 @dataclass(frozen=True, eq=False)
-class SpringShapes:
+class SpringBodies:
     """Bodies of all muscles of a spring face.
 
     Parameters
@@ -34,16 +34,16 @@ class SpringShapes:
     _local: FloatArray
 
     @staticmethod
-    def of(face: SpringFace) -> SpringShapes:
+    def of(face: SpringFace) -> SpringBodies:
         """Return the bodies of the muscles of `face`."""
         sphere, faces = _sphere()
         local = face.muscles.half_axes[:, None, :] * sphere
-        bare = SpringShapes(face, {}, Contraction(face.muscles), local)
+        bare = SpringBodies(face, {}, Contraction(face.muscles), local)
         places = bare.posed({})
         meshes = {
             name: TriMesh(points, _repeated(faces, points)) for name, points in places.items()
         }
-        return SpringShapes(face, meshes, bare._contraction, local)
+        return SpringBodies(face, meshes, bare._contraction, local)
 
     def posed(self, pose: Pose) -> dict[str, FloatArray]:
         """Return the vertices (k, 3) of every body in a pose, by muscle [mm]."""

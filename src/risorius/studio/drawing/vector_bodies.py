@@ -8,13 +8,13 @@ from risorius.anatomy.outwards import unit
 from risorius.mesh.core import TriMesh
 from risorius.vectormuscle.face import VectorFace
 
-__all__ = ["vector_shapes"]
+__all__ = ["vector_bodies"]
 
 _RINGS, _SIDES = 9, 8
 _RADIUS = 1.6
 
 
-def vector_shapes(face: VectorFace) -> dict[str, TriMesh]:
+def vector_bodies(face: VectorFace) -> dict[str, TriMesh]:
     """Return a spindle for every muscle, from its head to its tail [mm]."""
     size = _RADIUS * face.head.height / 230.0
     return {muscle.name: _spindle(*muscle.ends(), radius=size) for muscle in face.vectors.muscles}

@@ -1,0 +1,1 @@
+"""How muscles are shown, listed, drawn and changed: one craft for each method of a face."""
