@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from risorius._check import FloatArray
-from risorius.vectormuscle.kernels.limit import limited_sum
+from risorius.vectormuscle.kernels.limit import limited_sum, scatter
 from risorius.vectormuscle.muscle import BoundMuscle
 
 __all__ = ["combine"]
@@ -38,15 +38,20 @@ def combine(
     if not active:
         return result
     # Only what some muscle reaches is worked on.
-    zone = np.unique(np.concatenate([muscle.vertices for muscle, _ in active]))
-    rows = [np.searchsorted(zone, muscle.vertices) for muscle, _ in active]
+    place = np.zeros(len(positions), np.int32)
+    for muscle, _ in active:
+        place[muscle.vertices] = 1
+    zone = np.flatnonzero(place)
+    place[zone] = np.arange(len(zone), dtype=np.int32)
+    rows = [place[muscle.vertices] for muscle, _ in active]
     rest, moved = positions[zone], np.zeros((len(zone), 3))
     fields = np.zeros((len(active), len(zone), 3))
     for _ in range(steps):
+        placed = rest + moved
         for field, here, (muscle, share) in zip(fields, rows, active, strict=True):
-            field[here] = muscle.displace(rest[here] + moved[here], share)
+            scatter(muscle.displace(placed.take(here, axis=0), share), here, field)
         # Sorting by content makes floating point sums independent of the order of the muscles.
         order = sorted(range(len(fields)), key=lambda row: fields[row].tobytes())
-        limited_sum(fields[order], moved)
+        limited_sum(fields, np.array(order), moved)
     result[zone] = moved
     return result

@@ -16,6 +16,7 @@ from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.regions import Regions
 from risorius.errors import ParameterError
 from risorius.mesh.laplacian import averaging
+from risorius.vectormuscle.lip_hold import LipHold
 from risorius.vectormuscle.profile import AngularProfile
 
 __all__ = [
@@ -64,6 +65,29 @@ class FaceContext:
         """Matrix (n, n) that averages a field over the neighbours of each vertex."""
         mesh = self.mechanics.head.skin.mesh
         return averaging(mesh.faces, mesh.vertex_count)
+
+    @cached_property
+    def lip_hold(self) -> LipHold:
+        """Body of the lips and calm of the mouth corners."""
+        return LipHold.of(self.mechanics.lips, self.positions, self.averaging)
+
+    @cached_property
+    def movable(self) -> IntArray:
+        """Vertices (k,) that muscles may move."""
+        return np.flatnonzero(self.regions.mobility > 0.0).astype(np.int32)
+
+    def within(self, centre: FloatArray, radius: float) -> tuple[IntArray, FloatArray]:
+        """Return the movable vertices (k,) nearer to `centre` (3,) than `radius` [mm], and (k, 3).
+
+        The second are their places relative to the centre [mm].
+        """
+        offset = self._movable_places - centre
+        inside = np.einsum("kd,kd->k", offset, offset) < radius * radius
+        return self.movable[inside], offset[inside]
+
+    @cached_property
+    def _movable_places(self) -> FloatArray:
+        return self.positions[self.movable]
 
 
 class BoundMuscle(Protocol):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from risorius._check import FloatArray
+from risorius._check import FloatArray, IntArray
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.vectormuscle.muscle import FaceContext
 
@@ -13,8 +13,8 @@ __all__ = ["drag_field"]
 
 def drag_field(
     context: FaceContext, ends: FloatArray, amount: FloatArray, *, reach: float
-) -> FloatArray:
-    """Return the displacement (n, 3) [mm] of the skin around an insertion at contraction 1.
+) -> tuple[IntArray, FloatArray]:
+    """Return what follows an insertion: vertices (k,) and their displacement (k, 3) [mm] at 1.
 
     ``amount s(1 - |p - insertion| / reach)`` towards the origin, turned along what supports the
     skin at p; s is the smooth step. Waters' cone ends where real cheeks and chin still follow the
@@ -32,9 +32,13 @@ def drag_field(
     """
     along = ends[0] - ends[1]
     along = along / np.linalg.norm(along)
-    away = np.linalg.norm(context.positions - ends[1], axis=1) / reach
-    outward = context.outward
+    vertices, offset = context.within(ends[1], reach)
+    moves = amount[vertices] != 0.0
+    vertices, offset = vertices[moves], offset[moves]
+    away = np.sqrt(np.einsum("kd,kd->k", offset, offset)) / reach
+    outward = context.outward[vertices]
     inward = np.minimum(outward @ along, 0.0)
     way = along - (context.support * inward)[:, None] * outward
-    way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-12)
-    return (amount * smooth_step(1.0 - away))[:, None] * way
+    length = np.sqrt(np.einsum("kd,kd->k", way, way))
+    share = amount[vertices] * smooth_step(1.0 - away) / np.maximum(length, 1e-12)
+    return vertices, share[:, None] * way

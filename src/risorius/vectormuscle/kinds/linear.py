@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from risorius._check import FloatArray, IntArray, as_number
-from risorius.anatomy.smooth_step import smooth_step
 from risorius.errors import ParameterError, RisoriusWarning
+from risorius.vectormuscle.kernels.pull import pull_towards
 from risorius.vectormuscle.kinds.drag import drag_field
 from risorius.vectormuscle.kinds.fields import read_regions
 from risorius.vectormuscle.muscle import (
@@ -33,8 +33,6 @@ MOST_STRENGTH = 0.98 * fold_limit(start_radius=1.0, finish_radius=2.0) / _PULL
 """Greatest strength of a linear muscle; more would reach the fold limit of the profile."""
 # Skin that slides instead of sinking keeps its length up to this factor.
 MOST_STRETCH = 1.6
-# How often the effect is averaged in the mouth corner.
-_CALM_PASSES = 10
 # Wrinkles begin at this share of the start radius: at the bone there is no skin to fold.
 _FIRST_WRINKLE = 0.2
 
@@ -166,12 +164,14 @@ class LinearMuscle:
 
     def _effect(self, context: FaceContext) -> FloatArray:
         """Return the effect (n,) on the skin of a face, where it is permitted."""
-        effect = self.influence(context.positions, smooth=context.angular == "smooth")
+        effect = np.zeros(len(context.positions))
+        near, _ = context.within(self.origin, self.finish_radius)
+        here = self.influence(context.positions[near], smooth=context.angular == "smooth")
         if self.corner:
-            effect = effect * (1.0 - self.corner * _lip_body(context))
-        effect = effect * context.regions.mobility
+            here *= 1.0 - self.corner * context.lip_hold.body[near]
+        effect[near] = here * context.regions.mobility[near]
         if self.corner:
-            effect = np.where(effect > 0.0, _calm_corner(effect, context), 0.0)
+            effect = np.where(effect > 0.0, context.lip_hold.calmed(effect), 0.0)
         return effect * context.regions.permission(self.regions) if self.regions else effect
 
     def wrinkle_zone(self, context: FaceContext) -> WrinkleZone:
@@ -181,13 +181,13 @@ class LinearMuscle:
         distance = np.linalg.norm(context.positions - self.origin, axis=1)
         return WrinkleZone((distance - near) / length, self._effect(context), length)
 
-    def _dragged(self, effect: FloatArray, context: FaceContext) -> FloatArray:
-        """Return the field (n, 3) [mm] of what follows outside the cone."""
+    def _dragged(self, effect: FloatArray, context: FaceContext) -> tuple[IntArray, FloatArray]:
+        """Return vertices and field (k, 3) [mm] of what follows outside the cone."""
         free = context.regions.mobility * (1.0 - np.minimum(effect, 1.0))
         if self.regions:
             free = free * context.regions.permission(self.regions)
         if self.corner:
-            free = free * (1.0 - self.corner * _lip_body(context))
+            free = free * (1.0 - self.corner * context.lip_hold.body)
         amount = self.drag * self.pull * free
         return drag_field(context, self.ends(), amount, reach=self.reach)
 
@@ -195,16 +195,17 @@ class LinearMuscle:
         """Precompute the zone: permitted vertices with an effect."""
         effect = self._effect(context)
         pull, push = self.pull * effect, self.out * self.pull * effect
-        acts, field = effect > 0.0, None
+        acts, field = effect > 0.0, np.zeros((0, 3))
         if self.drag and context.drag:
-            dragged = self._dragged(effect, context)
-            push = push + self.bulge * np.linalg.norm(dragged, axis=1)
-            acts = acts | dragged.any(axis=1)
-            field = dragged
+            rows, dragged = self._dragged(effect, context)
+            field = np.zeros_like(context.positions)
+            field[rows] = dragged
+            push[rows] += self.bulge * np.linalg.norm(dragged, axis=1)
+            acts[rows] |= dragged.any(axis=1)
         vertices = np.flatnonzero(acts).astype(np.int32)
-        if self.out or field is not None:
+        if self.out or len(field):
             out = push[vertices, None] * context.normals[vertices]
-            field = out if field is None else field[vertices] + out
+            field = field[vertices] + out if len(field) else out
         return BoundLinear(
             vertices,
             pull[vertices],
@@ -243,59 +244,25 @@ class BoundLinear:
     """Zone of a linear muscle: `pull` (k,) [mm] at contraction 1 towards `origin` (3,).
 
     `support` of the motion against `outward` (k, 3) is taken away: skin slides over bone and
-    teeth. `field` (k, 3) [mm] is the rest of the motion: what bulges, and what is dragged along.
+    teeth. `field` (k, 3) [mm] is the rest of the motion: what bulges, and what is dragged along; it
+    has no rows where there is none.
     """
 
     vertices: IntArray
     pull: FloatArray
     origin: FloatArray
-    field: FloatArray | None
+    field: FloatArray
     outward: FloatArray
     support: float
 
     def displace(self, points: FloatArray, contraction: float) -> FloatArray:
         """Return ``-k g c r a d/|d|`` (k, 3): towards the origin (erratum E2)."""
-        offset = points - self.origin
-        distance = np.linalg.norm(offset, axis=1)
-        scale = contraction * self.pull / np.maximum(distance, 1e-300)
-        result = -np.where(distance > 0.0, scale, 0.0)[:, None] * offset
-        if self.support:
-            result = self._slide(result)
-        if self.field is not None:
-            result += contraction * self.field
+        result = np.empty_like(points)
+        pull_towards(
+            points, self.origin, self.pull, contraction,
+            self.outward, self.support, MOST_STRETCH, self.field, result,
+        )  # fmt: skip
         return result
-
-    def _slide(self, pull: FloatArray) -> FloatArray:
-        """Turn the inward share of a pull (k, 3) along the support; most of its length stays."""
-        inward = np.minimum(np.einsum("kd,kd->k", pull, self.outward), 0.0)
-        along = pull - (self.support * inward)[:, None] * self.outward
-        before = np.linalg.norm(pull, axis=1)
-        after = np.linalg.norm(along, axis=1)
-        stretch = np.minimum(before / np.maximum(after, 1e-300), MOST_STRETCH)
-        return along * np.where(after > 0.0, stretch, 1.0)[:, None]
-
-
-def _lip_body(context: FaceContext) -> FloatArray:
-    """Return how far (n,) a vertex belongs to the body of the lips: 1 in their middle."""
-    lips = context.mechanics.lips
-    corners = context.positions[list(lips.slit.corners)]
-    middle, half = corners[:, 0].mean(), 0.5 * lips.width
-    beside = np.abs(context.positions[:, 0] - middle) / half
-    near = smooth_step(1.0 - (lips.distance - 0.25 * lips.width) / (0.5 * lips.width))
-    return near * smooth_step((1.0 - beside) / 0.7)
-
-
-def _calm_corner(effect: FloatArray, context: FaceContext) -> FloatArray:
-    """Return the effect (n,) averaged with its neighbours in the mouth corner.
-
-    Lining and skin meet there in small triangles, which would fold where one lags.
-    """
-    lips = context.mechanics.lips
-    near = smooth_step(1.0 - lips.to_corner / (0.4 * lips.width))
-    calm = effect
-    for _ in range(_CALM_PASSES):
-        calm = context.averaging @ calm
-    return effect + near * (calm - effect)
 
 
 def _warn(message: str) -> None:

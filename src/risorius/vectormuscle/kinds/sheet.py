@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from risorius._check import FloatArray, as_number
+from risorius._check import FloatArray, IntArray, as_number
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.errors import ParameterError
 from risorius.vectormuscle.kinds.drag import drag_field
@@ -153,15 +153,16 @@ class SheetMuscle:
         along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
         field = -self.pull * effect[:, None] * along
         if self.drag and context.drag:
-            field = field + self._dragged(effect, context)
+            rows, dragged = self._dragged(effect, context)
+            field[rows] += dragged
         if self.out:
             push = self.out * np.linalg.norm(field, axis=1, keepdims=True)
             field = field + push * context.normals
         vertices = np.flatnonzero(field.any(axis=1)).astype(np.int32)
         return BoundField(vertices, field[vertices])
 
-    def _dragged(self, effect: FloatArray, context: FaceContext) -> FloatArray:
-        """Return the field (n, 3) [mm] of what follows beside and below the sheet."""
+    def _dragged(self, effect: FloatArray, context: FaceContext) -> tuple[IntArray, FloatArray]:
+        """Return vertices and field (k, 3) [mm] of what follows beside and below the sheet."""
         free = context.regions.mobility * (1.0 - np.clip(np.abs(effect), 0.0, 1.0))
         if self.regions:
             free = free * context.regions.permission(self.regions)
