@@ -13,10 +13,11 @@ from risorius.mesh.core import TriMesh
 from risorius.mesh.lids import LidMargins
 from risorius.spatial.raycast import Scene
 
-__all__ = ["LidGap", "lid_gaps"]
+__all__ = ["LID_PLACES", "LidGap", "LidSight", "lid_gaps"]
 
-# Where the gap is measured, along the eye from the inner corner (0) to the outer one (1).
-_PLACES = np.linspace(0.1, 0.9, 9)
+LID_PLACES = np.linspace(0.1, 0.9, 9)
+"""(9,) where the gap is measured, along the eye from the inner corner (0) to the outer one (1)."""
+
 # Lines of sight at one place [rad]: the step between them, and how far beyond the neutral's
 # opening they reach, for eyes that open wide.
 _STEP, _BEYOND = np.radians(0.25), np.radians(15.0)
@@ -68,7 +69,7 @@ def lid_gaps(head: Head, margins: LidMargins, side: str, deltas: FloatArray) -> 
     -----
     Lines of sight are a quarter of a degree apart, about 1 % of an ordinary opening.
     """
-    view = _View(head, margins, side)
+    view = LidSight(head, margins, side)
     if not view.opening > 0.0:
         return []
     lines = (margins.slit.upper, margins.slit.lower)
@@ -78,64 +79,87 @@ def lid_gaps(head: Head, margins: LidMargins, side: str, deltas: FloatArray) -> 
             result.append(LidGap(100.0, 0.0))
             continue
         left = view.gaps(moved).max() / view.opening
-        passed = view.overlap(lines, moved) / view.opening
+        passed = max(float(-view.apart(lines, moved).min()), 0.0) / view.opening
         result.append(LidGap(100.0 * float(left), 100.0 * passed))
     return result
 
 
-class _View:
-    """Lines of sight from the centre of one eye, and the skin around it that may stop them."""
+class LidSight:
+    """Lines of sight from the centre of one eye, and the skin around it that may stop them.
+
+    Parameters
+    ----------
+    head : Head
+    margins : LidMargins
+        Of this eye.
+    side : str
+        ``"l"`` or ``"r"``.
+
+    Attributes
+    ----------
+    opening : float
+        Largest gap of the neutral, 0 where lids cover the eye [rad].
+    vertices : (k,) int32
+        Vertices of the welded skin around the eye.
+    centre : (3,) float64
+        Of the eyeball [mm].
+    """
 
     def __init__(self, head: Head, margins: LidMargins, side: str) -> None:
         mesh = head.skin.mesh
         self._rest = mesh.positions
         inner, outer = self._rest[list(margins.slit.corners)]
-        self._centre = _centre(head, side, 0.5 * (inner + outer), margins.width)
+        self.centre = _centre(head, side, 0.5 * (inner + outer), margins.width)
         across = (outer - inner) * [1.0, 1.0, 0.0] * np.sign(outer[0] - inner[0])
         self._axis = across / np.linalg.norm(across)
         self._up = np.cross([0.0, 0.0, 1.0], self._axis)
-        self._corners = tuple(self._aside(corner - self._centre) for corner in (inner, outer))
+        self._corners = tuple(self._aside(corner - self.centre) for corner in (inner, outer))
         near = (margins.distance < margins.width)[mesh.faces].all(axis=1)
         self.vertices, faces = np.unique(mesh.faces[near], return_inverse=True)
         self._faces: IntArray = faces.reshape(-1, 3).astype(np.int32)
         self._pitches = np.arange(-_STEEPEST, _STEEPEST, _STEP)
         self.opening = 0.0
         rest = np.zeros_like(self._rest)
-        margin = self._rest[np.union1d(margins.slit.upper, margins.slit.lower)] - self._centre
+        margin = self._rest[np.union1d(margins.slit.upper, margins.slit.lower)] - self.centre
         low, high = np.quantile(np.arctan2(margin @ self._up, margin[:, 2]), [0.0, 1.0])
         within = (self._pitches > low - _BEYOND) & (self._pitches < high + _BEYOND)
         self._pitches = self._pitches[within]
         if len(self._faces) and len(self._pitches):
             self.opening = float(self.gaps(rest).max())
 
-    def _aside(self, arm: FloatArray) -> FloatArray:
-        """Return the angle (...) between arms and the plane square to the axis [rad]."""
-        length = np.sqrt((arm * arm).sum(axis=-1))
-        return np.arcsin(np.clip(arm @ self._axis / np.maximum(length, 1e-12), -1.0, 1.0))
-
     def gaps(self, moved: FloatArray) -> FloatArray:
         """Return the open angle (9,) at each place [rad]."""
         start, end = self._corners
-        aside = (start + _PLACES * (end - start))[:, None]
+        aside = (start + LID_PLACES * (end - start))[:, None]
         ahead, up = np.cos(self._pitches), np.sin(self._pitches)
         square = ahead[:, None] * [0.0, 0.0, 1.0] + up[:, None] * self._up
         sights = np.sin(aside)[..., None] * self._axis + np.cos(aside)[..., None] * square
         skin = TriMesh((self._rest + moved)[self.vertices], self._faces)
-        origins = np.broadcast_to(self._centre, (sights.size // 3, 3))
+        origins = np.broadcast_to(self.centre, (sights.size // 3, 3))
         hit = Scene([skin]).cast(origins, sights.reshape(-1, 3)).hit
-        return _STEP * (~hit).reshape(len(_PLACES), -1).sum(axis=1)
+        return _STEP * (~hit).reshape(len(LID_PLACES), -1).sum(axis=1)
 
-    def overlap(self, lines: tuple[IntArray, IntArray], moved: FloatArray) -> float:
-        """Return how far the upper margin lies below the lower one where it does so most [rad]."""
+    def apart(self, lines: tuple[IntArray, IntArray], moved: FloatArray) -> FloatArray:
+        """Return how far (9,) the upper margin lies above the lower one, < 0 below it [rad]."""
         contours: list[FloatArray] = []
-        start, end = self._corners
         for line in lines:
-            arm = self._rest[line] + moved[line] - self._centre
-            place = (self._aside(arm) - start) / (end - start)
+            points = self._rest[line] + moved[line]
+            place = self.places(points)
             order = np.argsort(place, kind="stable")
+            arm = points - self.centre
             pitch = np.arctan2(arm @ self._up, arm[:, 2])
-            contours.append(np.interp(_PLACES, place[order], pitch[order]))
-        return max(float((contours[1] - contours[0]).max()), 0.0)
+            contours.append(np.interp(LID_PLACES, place[order], pitch[order]))
+        return contours[0] - contours[1]
+
+    def places(self, points: FloatArray) -> FloatArray:
+        """Return where (k,) points (k, 3) lie between the inner corner, 0, and the outer, 1."""
+        start, end = self._corners
+        return (self._aside(points - self.centre) - start) / (end - start)
+
+    def _aside(self, arm: FloatArray) -> FloatArray:
+        """Return the angle (...) between arms and the plane square to the axis [rad]."""
+        length = np.sqrt((arm * arm).sum(axis=-1))
+        return np.arcsin(np.clip(arm @ self._axis / np.maximum(length, 1e-12), -1.0, 1.0))
 
 
 def _centre(head: Head, side: str, middle: FloatArray, width: float) -> FloatArray:
