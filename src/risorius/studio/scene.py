@@ -13,11 +13,13 @@ from risorius.anatomy.jaw import JawPose
 from risorius.controls.control import Pose, resolve_pose
 from risorius.head.head import Head
 from risorius.head.part import Part
+from risorius.layered.faithful import FaithfulFace
 from risorius.layered.muscle_shapes import MuscleShapes
 from risorius.mesh.core import TriMesh
 from risorius.render.colours import display_rgb
 from risorius.render.materials import colour_of_material, eye_paint
 from risorius.springmuscle.face import SpringFace
+from risorius.studio.drawing.faithful_bodies import FaithfulBodies
 from risorius.studio.drawing.spring_bodies import SpringBodies
 from risorius.studio.drawing.vector_bodies import vector_bodies
 from risorius.studio.subject import Subject
@@ -64,11 +66,22 @@ class Stage:
 
     subject: Subject
     meshes: tuple[SceneMesh, ...]
-    _shapes: MuscleShapes | SpringBodies | None
+    _shapes: MuscleShapes | FaithfulBodies | SpringBodies | None
 
     def mesh(self, name: str) -> SceneMesh | None:
         """Return the mesh called `name`, or None."""
         return next((each for each in self.meshes if each.name == name), None)
+
+    def rest(self, name: str) -> FloatArray:
+        """Return the vertices (k, 3) at rest of the mesh called `name` [mm]."""
+        found = self.mesh(name)
+        assert found is not None
+        return found.mesh.positions
+
+    @property
+    def lasting(self) -> tuple[SceneMesh, ...]:
+        """All meshes but the muscles, which change as they are drawn."""
+        return tuple(each for each in self.meshes if each.group != "muscles")
 
     def posed(self, pose: Pose, positions: FloatArray, groups: set[str]) -> dict[str, FloatArray]:
         """Return the vertices (k, 3) of the meshes of some groups, by name [mm].
@@ -87,32 +100,29 @@ class Stage:
         if "skull" in groups:
             values = resolve_pose(subject.face.controls, pose).values
             jaw = JawPose(*(values.get(f"jaw_{n}", 0.0) for n in ("pitch", "yaw", "protrusion")))
-            result["mandible"] = subject.mechanics.jaw.move(subject.fitted.mandible.positions, jaw)
-        if "muscles" in groups and isinstance(self._shapes, SpringBodies):
-            result |= self._shapes.posed(pose)
-        elif "muscles" in groups and isinstance(self._shapes, MuscleShapes):
+            result["mandible"] = subject.mechanics.jaw.move(self.rest("mandible"), jaw)
+        if "muscles" in groups and isinstance(self._shapes, MuscleShapes):
             result |= self._shapes.posed(pose, positions)
+        elif "muscles" in groups and self._shapes is not None:
+            result |= self._shapes.posed(pose)
         return result
 
 
 def stage_of(subject: Subject, before: Stage | None = None) -> Stage:
     """Return the stage of a subject; meshes of the same head are those of `before`."""
     if before is not None and before.subject.head is subject.head:
-        kept = tuple(each for each in before.meshes if each.group != "muscles")
+        kept = tuple(each for each in before.meshes if each.group in ("skin", "parts"))
     else:
         head = subject.head
         kept = tuple(_part_mesh(head, kind, part) for kind, part in head.parts.items())
-        kept += tuple(
-            SceneMesh(name, "skull", bone, _flat(_BONE, bone.vertex_count))
-            for name, bone in (
-                ("cranium", subject.fitted.cranium),
-                ("mandible", subject.fitted.mandible),
-            )
-        )
+    kept += tuple(_bone_mesh(name, bone, before) for name, bone in _bones(subject).items())
     shapes = None
     bodies: Mapping[str, TriMesh] = {}
     if subject.bench is not None:
         shapes = MuscleShapes.of(subject.bench.face, subject.space)
+        bodies = shapes.meshes
+    elif isinstance(subject.face, FaithfulFace):
+        shapes = FaithfulBodies.of(subject.face)
         bodies = shapes.meshes
     elif isinstance(subject.face, SpringFace):
         shapes = SpringBodies.of(subject.face)
@@ -123,6 +133,26 @@ def stage_of(subject: Subject, before: Stage | None = None) -> Stage:
         SceneMesh(name, "muscles", mesh, _muscle_colour(mesh)) for name, mesh in bodies.items()
     )
     return Stage(subject, kept + muscles, shapes)
+
+
+def _bones(subject: Subject) -> dict[str, TriMesh]:
+    """Return cranium and mandible as the muscles lie on them."""
+    bones = {"cranium": subject.fitted.cranium, "mandible": subject.fitted.mandible}
+    if not isinstance(subject.face, FaithfulFace):
+        return bones
+    anatomy = subject.face.muscles.anatomy
+    first = {name: anatomy.surfaces[name].first for name in bones}
+    return {
+        name: bone.at(anatomy.positions[first[name] : first[name] + bone.vertex_count])
+        for name, bone in bones.items()
+    }
+
+
+def _bone_mesh(name: str, bone: TriMesh, before: Stage | None) -> SceneMesh:
+    known = before.mesh(name) if before is not None else None
+    if known is not None and known.mesh is bone:
+        return known
+    return SceneMesh(name, "skull", bone, _flat(_BONE, bone.vertex_count))
 
 
 def _part_mesh(head: Head, kind: str, part: Part) -> SceneMesh:

@@ -239,7 +239,7 @@ class Workshop:
                 # Not again until something else is wished.
                 self.subject = replace(self.subject, work=work)
             return
-        same_head = self.subject is not None and stage.subject.head is self.subject.head
+        same_head = self.stage is not None and stage.lasting == self.stage.lasting
         renewed = self.stage is None or stage.meshes != self.stage.meshes
         self.subject, self.stage = stage.subject, stage
         known = {control.name for control in self.controls}
