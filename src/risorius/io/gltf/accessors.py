@@ -79,14 +79,14 @@ def read_rows(
 ) -> tuple[LongArray, FloatArray]:
     """Return the rows (k,) of an accessor that are not zero, and their values (k, width).
 
-    `count` is how many elements it must have; a sparse accessor is never unfolded.
+    `count` is how many elements it must have; a sparse accessor on zeros is never unfolded.
     """
     layout = _layout(document, index, where, width)
     if layout.count != count:
         raise FormatError(f"{layout.fields.where}: expected {count} elements, not {layout.count}")
     rows, replaced = _replaced(document, layout)
     values = layout.floats(replaced)
-    if "bufferView" in layout.fields:
+    if "bufferView" in layout.fields and not _is_blank(document, layout):
         dense = layout.floats(_base(document, layout))
         dense[rows] = values
         rows = np.arange(count, dtype=np.int64)
@@ -133,6 +133,15 @@ def _base(document: Document, layout: _Layout) -> NumberArray:
         raw = np.zeros((layout.count, layout.width), layout.dtype)
     document.spend(raw.size, fields.where)
     return raw
+
+
+def _is_blank(document: Document, layout: _Layout) -> bool:
+    """Return whether an accessor's buffer view is long enough and holds nothing but zeros."""
+    fields = layout.fields
+    index, place = fields.value["bufferView"], fields.place("bufferView")
+    data, stride = document.view(index, place)
+    _strided(data, fields.integer("byteOffset", default=0), stride, layout, layout.count)
+    return document.is_blank(index, place)
 
 
 def _strided(

@@ -46,6 +46,7 @@ class BinaryBuilder:
         self._size = 0
         self._pools: dict[str, _Pool] = {}
         self._zeros: dict[int, int] = {}
+        self._zero_views: dict[int, int] = {}
 
     def view(self, data: npt.NDArray[Any], *, target: int | None = None, name: str = "") -> int:
         """Add the bytes of `data` (...) and return the index of its buffer view."""
@@ -75,7 +76,10 @@ class BinaryBuilder:
     ) -> int:
         """Add an accessor of `count` vectors, zero but for `values` (k, 3) in `rows` (k,).
 
-        It is sparse, or full where that is smaller; without rows it needs no bytes and is shared.
+        It is sparse, or full where that is smaller; without rows it is shared. glTF lets both go
+        without a buffer view, but several importers fail there (Unity's glTFast and UnityGLTF),
+        and Unreal's drops such accessors and miscounts those behind them: they stand on zeros
+        that all of one length share.
         """
         if not len(rows):
             return self._all_zero(count)
@@ -86,6 +90,7 @@ class BinaryBuilder:
             return self.accessor(full, bounds=bounds)
         accessor = _described(values, bounds)
         accessor["count"] = count
+        accessor["bufferView"] = self._zero_view(count)
         if bounds and len(rows) < count:
             accessor["min"] = np.minimum(accessor["min"], 0.0).tolist()
             accessor["max"] = np.maximum(accessor["max"], 0.0).tolist()
@@ -129,11 +134,18 @@ class BinaryBuilder:
 
     def _all_zero(self, count: int) -> int:
         if count not in self._zeros:
-            zero = [0.0, 0.0, 0.0]
-            self._zeros[count] = self._add(
-                {"componentType": 5126, "count": count, "type": "VEC3", "min": zero, "max": zero}
-            )
+            accessor = _described(np.zeros((1, 3), "<f4"), True)
+            accessor.update(count=count, bufferView=self._zero_view(count))
+            self._zeros[count] = self._add(accessor)
         return self._zeros[count]
+
+    def _zero_view(self, count: int) -> int:
+        """Return the buffer view of `count` zero vectors, which many accessors share."""
+        if count not in self._zero_views:
+            view = self.view(np.zeros((count, 3), "<f4"), target=ARRAY_BUFFER, name="zeros")
+            self._views[view]["byteStride"] = 12
+            self._zero_views[count] = view
+        return self._zero_views[count]
 
     def _pool(self, key: str) -> _Pool:
         if key not in self._pools:

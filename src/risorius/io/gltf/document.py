@@ -13,6 +13,8 @@ import struct
 from pathlib import Path
 from urllib.parse import unquote
 
+import numpy as np
+
 from risorius.errors import FormatError
 from risorius.io.bounded import MEGABYTE, parse_json, read_bytes_limited
 from risorius.io.json_fields import Fields, whole_number
@@ -53,6 +55,7 @@ class Document:
         self.root = Fields(root, str(path))
         self._binary = binary
         self._buffers: dict[int, bytes] = {}
+        self._blank: dict[int, bool] = {}
         self._values_left = _MOST_VALUES
         self._require_understood()
 
@@ -91,6 +94,16 @@ class Document:
             )
         stride = view.integer("byteStride", low=1) if "byteStride" in view else None
         return memoryview(data)[start : start + length], stride
+
+    def is_blank(self, index: object, where: str) -> bool:
+        """Return whether a buffer view holds nothing but zero bytes."""
+        number = whole_number(index, where)
+        if number not in self._blank:
+            data, _ = self.view(number, where)
+            # Looking costs less than decoding, but overlapping views could ask for it without end.
+            self.spend(len(data) // 32, where)
+            self._blank[number] = not np.frombuffer(data, np.uint8).any()
+        return self._blank[number]
 
     def _buffer(self, index: int, where: str) -> bytes:
         if index not in self._buffers:
