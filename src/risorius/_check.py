@@ -89,6 +89,19 @@ def one_of(name: str, value: str, choices: Mapping[str, Any] | tuple[str, ...]) 
     return value
 
 
+def require_muscle_name(name: str) -> None:
+    """Refuse what cannot name a muscle that somebody draws: left and right come by mirroring."""
+    plain = name.replace("_", "")
+    if not (plain.isascii() and plain.isalnum() and name[:1].isalpha() and name == name.lower()):
+        raise ParameterError(
+            f"muscle name {name[:40]!r}: use small letters, digits and _, a letter first"
+        )
+    if name.endswith(("_l", "_r")):
+        raise ParameterError(
+            f"muscle name {name[:40]!r}: leave out the side; left and right are made by mirroring"
+        )
+
+
 def warn_of_strange_keys(
     where: str, found: Collection[str], known: Collection[str], *, kind: str
 ) -> None:

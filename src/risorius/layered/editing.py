@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from risorius._check import FloatArray, as_number
+from risorius._check import FloatArray, as_number, require_muscle_name
 from risorius.errors import ParameterError
 from risorius.layered.muscle import BONES, Muscle, Sheet
 from risorius.layered.muscle_map import MuscleMap
@@ -68,7 +68,7 @@ def renamed(muscle_map: MuscleMap, name: str, new: str) -> MuscleMap:
     muscle = _muscle(muscle_map, name)
     if new == name:
         return muscle_map
-    _require_name(new)
+    require_muscle_name(new)
     if new in muscle_map.by_name or new in BONES:
         raise ParameterError(f"muscle {name}: the name {new!r} is taken; choose another")
     kept = tuple(
@@ -101,7 +101,7 @@ def free_name(muscle_map: MuscleMap, stem: str) -> str:
     ParameterError
         If it is no name.
     """
-    _require_name(stem)
+    require_muscle_name(stem)
     name, count = stem, 1
     while name in muscle_map.by_name or name in BONES:
         count += 1
@@ -188,18 +188,6 @@ def _sheet(muscle: Muscle) -> Sheet:
 def _require_index(muscle: Muscle, index: int, count: int) -> None:
     if not 0 <= index < count:
         raise ParameterError(f"muscle {muscle.name}: no point {index} among {count}")
-
-
-def _require_name(name: str) -> None:
-    plain = name.replace("_", "")
-    if not (plain.isascii() and plain.isalnum() and name[:1].isalpha() and name == name.lower()):
-        raise ParameterError(
-            f"muscle name {name[:40]!r}: use small letters, digits and _, a letter first"
-        )
-    if name.endswith(("_l", "_r")):
-        raise ParameterError(
-            f"muscle name {name!r}: leave out the side; left and right are made by mirroring"
-        )
 
 
 def _placed(muscle: Muscle, place: FloatArray) -> FloatArray:

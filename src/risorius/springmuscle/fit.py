@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -79,8 +80,17 @@ class Ground:
         return grow_bones(self.surface, self.skin_bones)
 
 
-def fit_muscles(recipe: OutlineRecipe, ground: Ground) -> MuscleSet:
+def fit_muscles(
+    recipe: OutlineRecipe, ground: Ground, *, known: Mapping[str, FittedMuscle] | None = None
+) -> MuscleSet:
     """Fit all muscles of a recipe and link their ends.
+
+    Parameters
+    ----------
+    recipe : OutlineRecipe
+    ground : Ground
+    known : mapping of str to FittedMuscle, optional
+        Muscles of these outlines that have been fitted to this ground already, by name.
 
     Raises
     ------
@@ -90,6 +100,9 @@ def fit_muscles(recipe: OutlineRecipe, ground: Ground) -> MuscleSet:
     outlines = {outline.name: outline for outline in recipe.sided()}
     fitted: dict[str, FittedMuscle] = {}
     for outline in outlines.values():
+        if known and outline.name in known:
+            fitted[outline.name] = known[outline.name]
+            continue
         twin = outline.name[:-2] + "_l"
         right = ground.symmetric and outline.name.endswith("_r") and twin in fitted
         if right and outline.mirrors(outlines[twin]):

@@ -85,10 +85,24 @@ class MuscleSet:
 
     @cached_property
     def symmetric(self) -> bool:
-        """Whether every paired muscle has its exact mirror image."""
+        """Whether every muscle of a side has its exact mirror image."""
         sided = {m.action.control for m in self.muscles if m.side}
         paired = {c.name: c.mirror for c in self.controls if c.name in sided}
-        return all(one == other or self.twins(one, other) for one, other in paired.items())
+        return all(
+            self._is_even(one) if one == other else self.twins(one, other)
+            for one, other in paired.items()
+        )
+
+    def _is_even(self, control: str) -> bool:
+        """Return whether the sided muscles of one control are each other's mirror images."""
+        muscles = {m.name: m for m in self.muscles if m.action.control == control and m.side}
+        for name, muscle in muscles.items():
+            twin = muscles.get(name[:-2] + {1: "_r", -1: "_l"}[muscle.side])
+            if twin is None or twin.action != muscle.action:
+                return False
+            if not np.array_equal(_points(muscle) * [-1.0, 1.0, 1.0], _points(twin)):
+                return False
+        return True
 
     def twins(self, one: str, other: str) -> bool:
         """Return whether the muscles of two controls are exact mirror images of each other."""

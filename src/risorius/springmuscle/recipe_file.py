@@ -24,7 +24,7 @@ from risorius.springmuscle.recipe import (
     Ring,
 )
 
-__all__ = ["default_recipe", "parse_recipe", "read_recipe", "write_recipe"]
+__all__ = ["default_recipe", "parse_recipe", "read_recipe", "recipe_to_json", "write_recipe"]
 
 SCHEMA = "risorius/outline-recipe"
 VERSION = 1
@@ -76,6 +76,11 @@ def recipe_text(recipe: OutlineRecipe) -> str:
     """Return the text of a recipe's file."""
     entries = ",\n".join(_text(outline) for outline in recipe.muscles)
     return f'{{\n "schema": "{SCHEMA}",\n "version": {VERSION},\n "muscles": [\n{entries}\n ]\n}}\n'
+
+
+def recipe_to_json(recipe: OutlineRecipe) -> dict[str, Any]:
+    """Return the JSON of a recipe, as it stands in files and inside projects."""
+    return json.loads(recipe_text(recipe))
 
 
 @cache

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import Any, cast
 
 import numpy as np
 
-from risorius._check import FloatArray
+from risorius._check import FloatArray, require_muscle_name
 from risorius.errors import ParameterError
 from risorius.vectormuscle.kinds.linear import LinearMuscle
 from risorius.vectormuscle.muscle import VectorMuscle, mirrored_name
@@ -18,7 +17,6 @@ from risorius.vectormuscle.vector_set import VectorSet, parse_vector_set
 __all__ = ["added", "moved_end", "removed", "with_numbers"]
 
 _ENDS = ("origin", "insertion")
-_NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
 def moved_end(vectors: VectorSet, name: str, end: str, place: FloatArray) -> VectorSet:
@@ -71,10 +69,7 @@ def added(vectors: VectorSet, stem: str, head: FloatArray, tail: FloatArray) -> 
     ParameterError
         If `stem` is no name or is taken.
     """
-    if not _NAME.fullmatch(stem) or stem.endswith(("_l", "_r")):
-        raise ParameterError(
-            f"muscle name {stem[:40]!r}: use small letters, digits and _, and leave out the side"
-        )
+    require_muscle_name(stem)
     names = {muscle.name for muscle in vectors.muscles}
     if names & {stem, f"{stem}_l", f"{stem}_r"}:
         raise ParameterError(f"muscle {stem}: the name is taken; choose another")
