@@ -12,11 +12,21 @@ from typing import Any
 from risorius.controls.shape_sets import SHAPE_SETS
 from risorius.errors import FormatError, ParameterError
 from risorius.io.atomic import write_bytes
-from risorius.io.bounded import MEGABYTE, read_json
+from risorius.io.bounded import MEGABYTE, check_schema, read_json
 from risorius.io.json_fields import Fields
 from risorius.project.project import BUILTIN, INLINE, Project
 
-__all__ = ["SCHEMA", "UPGRADES", "VERSION", "read_project", "upgrade_project", "write_project"]
+__all__ = [
+    "SCHEMA",
+    "UPGRADES",
+    "VERSION",
+    "parse_project",
+    "project_bytes",
+    "project_document",
+    "read_project",
+    "upgrade_project",
+    "write_project",
+]
 
 SCHEMA = "risorius/project"
 VERSION = 2
@@ -45,8 +55,19 @@ def read_project(path: str | Path) -> Project:
     FormatError
         If the file is malformed, of another schema or of a newer version.
     """
-    document = read_json(path, schema=SCHEMA, version=VERSION, limit=_LIMIT)
-    return _parse(_lifted(document, UPGRADES, VERSION), Path(path))
+    return parse_project(read_json(path, schema=SCHEMA, version=VERSION, limit=_LIMIT), Path(path))
+
+
+def parse_project(document: Document, path: Path) -> Project:
+    """Build the project from the parsed JSON of its file at `path`.
+
+    Raises
+    ------
+    FormatError
+        If it is malformed, of another schema or of a newer version.
+    """
+    check_schema(document, str(path), schema=SCHEMA, version=VERSION)
+    return _parse(_lifted(document, UPGRADES, VERSION), path)
 
 
 def write_project(project: Project, path: str | Path) -> None:
@@ -57,7 +78,19 @@ def write_project(project: Project, path: str | Path) -> None:
     FormatError
         If the file cannot be written.
     """
-    path = Path(path)
+    write_bytes(Path(path), project_bytes(project, Path(path)))
+
+
+def project_bytes(project: Project, path: Path) -> bytes:
+    """Return the content of a project's file at `path`."""
+    text = json.dumps(
+        project_document(project, path), indent=2, ensure_ascii=False, allow_nan=False
+    )
+    return f"{text}\n".encode()
+
+
+def project_document(project: Project, path: Path) -> Document:
+    """Return the JSON of a project as its file at `path` holds it."""
     document: Document = {"schema": SCHEMA, "version": VERSION}
     folder = Path(os.path.realpath(path)).parent
     for name in (*_PATHS[:2], *_TEXTS[:2], *_OTHERS[:2], *_TEXTS[2:], *_OTHERS[2:], *_PATHS[2:]):
@@ -71,8 +104,7 @@ def write_project(project: Project, path: str | Path) -> None:
                 document[name] = dict(value)  # pyright: ignore[reportUnknownArgumentType]
         elif value is not None and value is not False:
             document[name] = list(value) if isinstance(value, tuple) else value
-    text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
-    write_bytes(path, f"{text}\n".encode())
+    return document
 
 
 def upgrade_project(
