@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -15,7 +17,15 @@ from risorius.errors import ParameterError
 from risorius.rig.face import Face
 from risorius.tuning.genome import Genome, Parameter
 
-__all__ = ["Candidates", "FunctionCandidates", "PoseCandidates", "sensitivity_of"]
+__all__ = [
+    "Candidates",
+    "FaceCandidates",
+    "FunctionCandidates",
+    "PoseCandidates",
+    "all_positions",
+    "paired_controls",
+    "sensitivity_of",
+]
 
 
 class Candidates(Protocol):
@@ -28,6 +38,19 @@ class Candidates(Protocol):
 
     def positions(self, values: Mapping[str, float]) -> FloatArray:
         """Return the vertices (n, 3) of the candidate with these values [mm]."""
+        ...
+
+
+class FaceCandidates(Candidates, Protocol):
+    """Muscles with genes, in one expression."""
+
+    @property
+    def pose(self) -> Pose:
+        """The expression that is looked at."""
+        ...
+
+    def face_of(self, values: Mapping[str, float]) -> Face:
+        """Return the face whose muscles have these values; others stay as they are."""
         ...
 
 
@@ -79,34 +102,55 @@ class PoseCandidates:
         values = resolve_pose(self.face.controls, self.pose).values
         parameters = [
             Parameter(name, ranges[group[0]].low, ranges[group[0]].high, values[group[0]])
-            for name, group in self._groups().items()
+            for name, group in self._groups.items()
         ]
         return Genome(tuple(parameters))
 
     def pose_of(self, values: Mapping[str, float]) -> Pose:
         """Return the preset with these values."""
-        return {
-            control: values[name] for name, group in self._groups().items() for control in group
-        }
+        return {control: values[name] for name, group in self._groups.items() for control in group}
 
     def positions(self, values: Mapping[str, float]) -> FloatArray:
         """Return the vertices (n, 3) of the candidate with these values [mm]."""
         return self.face.pose(self.pose_of(values))
 
+    @cached_property
     def _groups(self) -> dict[str, tuple[str, ...]]:
-        """Return controls by the name of the parameter that drives them."""
-        result: dict[str, tuple[str, ...]] = {}
-        for name, value in self.pose.items():
-            other = _other_side(name)
-            both = self.mirror and other is not None and self.pose.get(other) == value
-            stem = name[:-2] if both else name
-            result[stem] = (*result.get(stem, ()), name)
-        return result
+        return paired_controls(self.pose, mirror=self.mirror)
+
+
+def paired_controls(pose: Pose, *, mirror: bool = True) -> dict[str, tuple[str, ...]]:
+    """Return the controls of a pose by the name of the parameter that drives them.
+
+    With `mirror`, controls of both sides that are equal are driven by one, named without side.
+    """
+    result: dict[str, tuple[str, ...]] = {}
+    for name, value in pose.items():
+        other = _other_side(name)
+        both = mirror and other is not None and pose.get(other) == value
+        stem = name[:-2] if both else name
+        result[stem] = (*result.get(stem, ()), name)
+    return result
 
 
 def _other_side(name: str) -> str | None:
     swapped = {"_l": "_r", "_r": "_l"}.get(name[-2:])
     return name[:-2] + swapped if swapped else None
+
+
+def all_positions(candidates: Candidates, rows: FloatArray) -> list[FloatArray]:
+    """Return the vertices (n, 3) of many candidates [mm], made side by side.
+
+    Parameters
+    ----------
+    candidates : Candidates
+    rows : (c, p) float64
+        Values of each, in the order of the genome.
+    """
+    genome = candidates.genome
+    named = [genome.named(row) for row in rows]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(candidates.positions, named))
 
 
 def sensitivity_of(candidates: Candidates, *, names: Iterable[str] | None = None) -> FloatArray:
@@ -126,15 +170,15 @@ def sensitivity_of(candidates: Candidates, *, names: Iterable[str] | None = None
     """
     genome = candidates.genome
     start = genome.start
-    rest = candidates.positions(genome.named(start))
+    rows = genome.rows(genome.names if names is None else names)
+    reach = 0.25 * (genome.high - genome.low)
+    # Into the range, where the start is an end of it.
+    reach = np.where(start + reach <= genome.high, reach, -reach)
+    moved = start + np.vstack([np.zeros(len(genome)), np.diag(reach)[rows]])
+    rest, *others = all_positions(candidates, moved)
     result = np.zeros((rest.size, len(genome)))
-    for row in genome.rows(genome.names if names is None else names):
-        moved = start.copy()
-        reach = 0.25 * (genome.high[row] - genome.low[row])
-        upwards = start[row] + reach <= genome.high[row]
-        moved[row] += reach if upwards else -reach
-        change = candidates.positions(genome.named(moved)) - rest
-        result[:, row] = change.ravel() * (4.0 if upwards else -4.0)
+    for row, made in zip(rows, others):
+        result[:, row] = (made - rest).ravel() * (4.0 if reach[row] > 0.0 else -4.0)
     if not np.isfinite(result).all():
         raise ParameterError("sensitivity: a candidate has vertices that are not finite")
     return result

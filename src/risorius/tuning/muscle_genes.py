@@ -6,12 +6,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any, Literal, cast
+from typing import Any, cast
 
 import numpy as np
 
 from risorius._check import FloatArray, one_of
 from risorius.controls.control import Pose
+from risorius.tuning.change import Change, Gene, Genes, parameters_of
 from risorius.tuning.genome import Genome, Parameter
 from risorius.vectormuscle.face import VectorFace
 from risorius.vectormuscle.kinds.linear import MOST_STRENGTH
@@ -19,30 +20,30 @@ from risorius.vectormuscle.muscle import VectorMuscle
 
 __all__ = ["Genes", "MuscleCandidates", "apply_genes", "muscle_parameters"]
 
-Genes = Literal["published", "all"]
-Way = Literal["shift", "factor", "add", "share"]
 # Spec vector-muscles 2.6: coordinates +-8 % of the head's width, radii +-30 %, angles +-10
 # degrees, strength 0.5 to 1.5; all as changes, so that a style fits the next head as well.
-_SHIFT = ("shift", -0.08, 0.08)
-_LENGTH = ("factor", 0.7, 1.3)
-_AMOUNT = ("factor", 0.5, 1.5)
-_PUBLISHED: Mapping[str, tuple[Way, float, float]] = MappingProxyType(
+_SHIFT = Change("shift", -0.08, 0.08)
+_LENGTH = Change("factor", 0.7, 1.3)
+_AMOUNT = Change("factor", 0.5, 1.5)
+_PUBLISHED: Mapping[str, Change] = MappingProxyType(
     {
         "origin": _SHIFT, "insertion": _SHIFT, "centre": _SHIFT,
         "start_radius": _LENGTH, "finish_radius": _LENGTH, "radii": _LENGTH,
-        "half_width": _LENGTH, "height": _LENGTH, "half_angle": ("add", -10.0, 10.0),
-        "strength": _AMOUNT, "pull": _AMOUNT, "shrink": _AMOUNT, "forward": _AMOUNT,
+        "half_width": _LENGTH, "height": _LENGTH,
+        "half_angle": Change("add", -10.0, 10.0, least=1.0, most=89.0),
+        "strength": Change("factor", 0.5, 1.5, most=MOST_STRENGTH),
+        "pull": _AMOUNT, "shrink": _AMOUNT, "forward": _AMOUNT,
         "part": _AMOUNT, "back": _AMOUNT, "over": _AMOUNT,
     }
 )  # fmt: skip
 # Ours: how skin follows and bulges, which the ten numbers cannot say. Shares change by addition
 # and stay inside the limits.
-_FURTHER: Mapping[str, tuple[Way, float, float]] = MappingProxyType(
+_FURTHER: Mapping[str, Change] = MappingProxyType(
     {
-        "drag": ("share", 0.0, 0.95), "reach": ("factor", 0.5, 2.0), "out": ("add", -0.7, 0.7),
-        "bulge": ("add", -0.7, 0.7),
-        "corner": ("share", 0.0, 0.95), "fixed": ("share", 0.0, 0.6),
-        "fade_origin": ("factor", 0.4, 2.5), "fade_insertion": ("factor", 0.4, 2.5),
+        "drag": Change("share", 0.0, 0.95), "reach": Change("factor", 0.5, 2.0),
+        "out": Change("add", -0.7, 0.7), "bulge": Change("add", -0.7, 0.7),
+        "corner": Change("share", 0.0, 0.95), "fixed": Change("share", 0.0, 0.6),
+        "fade_origin": Change("factor", 0.4, 2.5), "fade_insertion": Change("factor", 0.4, 2.5),
     }
 )  # fmt: skip
 _RULES = MappingProxyType({**_PUBLISHED, **_FURTHER})
@@ -69,24 +70,19 @@ def muscle_parameters(
         and lags.
     """
     one_of("genes", genes, ("published", "all"))
-    result: dict[str, Parameter] = {}
+    found: list[Gene] = []
     for muscle in muscles:
         name = muscle.name
         sided = name.endswith(("_l", "_r"))
         stem = name[:-2] if mirror and sided else name
-        for gene, (way, low, high), value in _numbers(muscle):
-            if genes == "published" and gene in _FURTHER:
+        for gene, change, value in _numbers(muscle):
+            # A muscle that does not spare the lips keeps that.
+            if gene == "corner" and value == 0.0:
                 continue
-            # What a muscle does not have cannot be scaled; its drag alone may begin.
-            if value == 0.0 and (way == "factor" or gene == "corner"):
+            if mirror and not sided and change.way == "shift" and gene.endswith("_x"):
                 continue
-            if way == "share":
-                low, high = min(low - value, 0.0), max(high - value, 0.0)
-            if mirror and not sided and way == "shift" and gene.endswith("_x"):
-                continue
-            full = f"{stem}.{gene}"
-            result[full] = Parameter(full, low, high, 1.0 if way == "factor" else 0.0)
-    return tuple(result.values())
+            found.append(Gene(stem, gene, change, value))
+    return parameters_of(found, _FURTHER, which=genes)
 
 
 def apply_genes(muscle: VectorMuscle, values: Mapping[str, float], *, width: float) -> VectorMuscle:
@@ -108,26 +104,17 @@ def apply_genes(muscle: VectorMuscle, values: Mapping[str, float], *, width: flo
         if full in values:
             change = values[full]
         elif shared in values:
-            mirrored = muscle.name.endswith("_r") and rule[0] == "shift" and gene.endswith("_x")
+            mirrored = muscle.name.endswith("_r") and rule.way == "shift" and gene.endswith("_x")
             change = -values[shared] if mirrored else values[shared]
         else:
             continue
-        changed[gene] = _changed(rule, value, change, width)
+        changed[gene] = rule.applied(value, change, size=width)
     return _with_numbers(muscle, changed) if changed else muscle
 
 
-def _changed(rule: tuple[Way, float, float], value: float, change: float, width: float) -> float:
-    way, low, high = rule
-    if way == "shift":
-        return value + change * width
-    if way == "share":
-        return float(np.clip(value + change, low, high))
-    return value * change if way == "factor" else value + change
-
-
-def _numbers(muscle: VectorMuscle) -> list[tuple[str, tuple[Way, float, float], float]]:
+def _numbers(muscle: VectorMuscle) -> list[tuple[str, Change, float]]:
     """Return (gene, rule, value) for each number of a muscle that may be tuned."""
-    found: list[tuple[str, tuple[Way, float, float], float]] = []
+    found: list[tuple[str, Change, float]] = []
     for entry in fields(cast(Any, muscle)):
         rule = _RULES.get(entry.name)
         if rule is None:
@@ -159,11 +146,7 @@ def _with_numbers(muscle: VectorMuscle, changed: Mapping[str, float]) -> VectorM
 
 
 def _tamed(muscle: VectorMuscle, new: dict[str, Any]) -> dict[str, Any]:
-    """Return `new` numbers inside what a muscle may have."""
-    if "strength" in new:
-        new["strength"] = min(new["strength"], MOST_STRENGTH)
-    if "half_angle" in new:
-        new["half_angle"] = float(np.clip(new["half_angle"], 1.0, 89.0))
+    """Return `new` numbers, the fall-off starting before it ends."""
     if "start_radius" in new or "finish_radius" in new:
         finish = new.get("finish_radius", getattr(muscle, "finish_radius", np.inf))
         start = new.get("start_radius", getattr(muscle, "start_radius", 0.0))
@@ -216,6 +199,10 @@ class MuscleCandidates:
         """Return the tuned muscles."""
         return tuple(apply_genes(each, values, width=self.width) for each in self.proposed)
 
+    def face_of(self, values: Mapping[str, float]) -> VectorFace:
+        """Return the face with the tuned muscles bound anew, all others as they are."""
+        return self.face.with_muscles(self.muscles(values))
+
     def positions(self, values: Mapping[str, float]) -> FloatArray:
         """Return the vertices (n, 3) of the candidate with these values [mm]."""
-        return self.face.with_muscles(self.muscles(values)).pose(self.pose)
+        return self.face_of(values).pose(self.pose)
