@@ -121,7 +121,7 @@ class LivePlayer(Player):
         step = self._stepper()
         for frame in self.stream:
             posed = step(self.pose_of(frame.values))
-            yield frame_of.to_input(posed), self._turn(frame.values)
+            yield frame_of.to_input(posed), self.turn_of(frame.values)
 
     def _stepper(self) -> Callable[[Pose], FloatArray]:
         """Return what takes a frame's pose and gives its positions [canonical frame]."""

@@ -70,7 +70,7 @@ class Player:
 
         def rows() -> Iterator[FloatArray]:
             for frame in self.stream:
-                turns.append(self._turn(frame.values))
+                turns.append(self.turn_of(frame.values))
                 yield self.weights.of(frame.values)
 
         for posed in Poser(self.rig).frames(rows()):
@@ -91,7 +91,7 @@ class Player:
         for frame in self.stream:
             rows.append(self.weights.of(frame.values).astype(np.float32))
             times.append(frame.time)
-            turns.append(self._turn(frame.values))
+            turns.append(self.turn_of(frame.values))
             if len(rows) * max(len(self.rig.targets), 1) > _MOST_NUMBERS:
                 raise FormatError(
                     f"{self.stream.source}: more than {len(rows) - 1} frames do not fit into one "
@@ -106,7 +106,7 @@ class Player:
         """Return the rig and its animation, as files hold them; see `track`."""
         return self.rig, self.track(name=name)
 
-    def _turn(self, values: Mapping[str, float]) -> Mapping[str, float]:
+    def turn_of(self, values: Mapping[str, float]) -> Mapping[str, float]:
         """Return pitch, yaw and roll of a frame [deg]; empty where the head does not turn."""
         turn = head_turn_of(values)
         if not any(turn):

@@ -13,6 +13,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from risorius.errors import ParameterError
 from risorius.project import Project
+from risorius.studio.bakery import Bakery
 from risorius.studio.document import Document
 from risorius.studio.guard import Guard, require_allowed
 from risorius.studio.hub import Connection
@@ -100,9 +101,10 @@ def serve(
     require_allowed(address.host, allow_remote=False)
     document = Document.open(path, project)
     shop = Workshop(document)
+    bakery = Bakery(shop)
 
     def page() -> None:
-        Page(shop)
+        Page(shop, bakery)
 
     def begin() -> None:
         shop.start()
@@ -132,9 +134,10 @@ def serve(
 def _stream_of(shop: Workshop) -> Callable[[WebSocket], object]:
     async def stream(websocket: WebSocket) -> None:
         await websocket.accept()
-        connection = Connection(websocket.send_bytes)
+        connection = Connection(websocket.send_bytes, websocket.query_params.get("page", ""))
         shop.hub.add(connection)
         shop.greet(connection.put)
+        shop.tell("stream")
         sender = asyncio.create_task(connection.run())
         try:
             while connection.reply(await websocket.receive_text()):

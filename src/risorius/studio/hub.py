@@ -21,10 +21,13 @@ class Connection:
     ----------
     send : callable
         Sends bytes.
+    page : str
+        By which its page is known.
     """
 
-    def __init__(self, send: Callable[[bytes], Awaitable[None]]) -> None:
+    def __init__(self, send: Callable[[bytes], Awaitable[None]], page: str = "") -> None:
         self._send = send
+        self.page = page
         self._queue: deque[bytes] = deque()
         self._newest: bytes | None = None
         self._wake = asyncio.Event()
@@ -88,6 +91,10 @@ class Hub:
     def connections(self) -> tuple[Connection, ...]:
         """Streams to the open pages."""
         return tuple(self._connections)
+
+    def of(self, page: str) -> Connection | None:
+        """Return the stream to a page, or None while it has none."""
+        return next((each for each in self._connections if each.page == page), None)
 
     def add(self, connection: Connection) -> None:
         """Add a page."""

@@ -81,6 +81,12 @@ body, .q-btn, .q-field { font-family: Roboto, system-ui, sans-serif; font-size:1
   border:1px solid var(--line); cursor:crosshair; touch-action:none; }
 .rv-cross-x, .rv-cross-y { position:absolute; background:var(--line); }
 .rv-cross-x { top:0; bottom:0; width:1px; } .rv-cross-y { left:0; right:0; height:1px; }
+.rv-time { width:100%; }
+.rv-line { width:100%; height:58px; display:block; border-radius:6px; cursor:ew-resize;
+  touch-action:none; outline:none; }
+.rv-line:focus-visible { box-shadow:0 0 0 1px var(--accent); }
+.rv-deck { display:flex; align-items:center; gap:8px; padding-top:4px; }
+.rv-deck .st-number { width:52px; }
 .rv-knob { position:absolute; width:14px; height:14px; border-radius:7px; margin:0 0 -7px -7px;
   background:var(--accent); box-shadow:0 0 0 3px rgba(224,138,99,.25); }
 """

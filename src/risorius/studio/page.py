@@ -7,10 +7,11 @@ from functools import wraps
 from inspect import isawaitable
 from typing import Any
 
-from nicegui import ui
+from nicegui import background_tasks, ui
 from nicegui.events import GenericEventArguments, KeyEventArguments, ValueChangeEventArguments
 
 from risorius.errors import FormatError, RisoriusError
+from risorius.studio.bakery import Bakery
 from risorius.studio.looks import ACCENT, CSS
 from risorius.studio.panels.catalogue import PANELS
 from risorius.studio.scene import GROUPS
@@ -21,7 +22,7 @@ from risorius.studio.workshop import Workshop
 
 __all__ = ["Page"]
 
-_EVENTS = ("select", "place", "finish", "dragging", "dropped", "handle", "choose")
+_EVENTS = ("select", "place", "finish", "dragging", "dropped", "handle", "choose", "seek")
 Handler = Callable[..., Awaitable[None] | None]
 
 
@@ -31,10 +32,12 @@ class Page:
     Parameters
     ----------
     shop : Workshop
+    bakery : Bakery
     """
 
-    def __init__(self, shop: Workshop) -> None:
+    def __init__(self, shop: Workshop, bakery: Bakery) -> None:
         self.shop = shop
+        self.bakery = bakery
         self.client = ui.context.client
         self.opacity = {"skin": 1.0, "parts": 1.0, "skull": 0.0, "muscles": 0.0}
         self.hidden: set[str] = set()
@@ -47,7 +50,7 @@ class Page:
         with ui.element("div").classes("st-body"):
             self._build_panels()
             with ui.element("div").classes("st-view"):
-                self.view = Viewport()
+                self.view = Viewport(self.client.id)
                 self.hint = ui.html("", sanitize=False).classes("st-hint")
                 self.busy = ui.label("building the face …").classes("st-busy")
         for name in _EVENTS:
@@ -91,6 +94,10 @@ class Page:
 
         return run
 
+    def start(self, work: Callable[[], Awaitable[None]]) -> None:
+        """Do something that takes time; what is refused is shown."""
+        background_tasks.create(self.safely(work)())
+
     def refuse(self, sentence: str) -> None:
         """Show why something is not possible."""
         with self.client:
@@ -128,7 +135,8 @@ class Page:
             if what == "face":
                 self.busy.set_visibility(False)
             if what == "show":
-                self.view.set(selected=self.shop.show.selected)
+                show = self.shop.show
+                self.view.set(selected=show.selected, painted=show.heat != "none")
             self.bar.refresh(what)
             for panel in self.panels:
                 panel.refresh(what)

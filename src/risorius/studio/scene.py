@@ -101,10 +101,11 @@ class Stage:
             values = resolve_pose(subject.face.controls, pose).values
             jaw = JawPose(*(values.get(f"jaw_{n}", 0.0) for n in ("pitch", "yaw", "protrusion")))
             result["mandible"] = subject.mechanics.jaw.move(self.rest("mandible"), jaw)
-        if "muscles" in groups and isinstance(self._shapes, MuscleShapes):
-            result |= self._shapes.posed(pose, positions)
-        elif "muscles" in groups and self._shapes is not None:
-            result |= self._shapes.posed(pose)
+        if "muscles" in groups:
+            if isinstance(self._shapes, MuscleShapes):
+                result |= self._shapes.posed(pose, positions)
+            elif self._shapes is not None:
+                result |= self._shapes.posed(pose)
         return result
 
 

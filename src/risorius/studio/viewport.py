@@ -9,7 +9,7 @@ from typing import Any
 import nicegui
 from nicegui.element import Element
 
-__all__ = ["STREAM", "Pad", "Viewport"]
+__all__ = ["STREAM", "Pad", "Timeline", "Viewport"]
 
 STREAM = "/studio/stream"
 """Where the viewport finds its binary stream."""
@@ -24,13 +24,18 @@ class Viewport(
 ):
     """Meshes, handles and lines in one or more views; see ``browser/modules``.
 
-    Its events are ``select``, ``place``, ``finish``, ``dragging``, ``dropped``, ``handle`` and
-    ``choose``.
+    Its events are ``select``, ``place``, ``finish``, ``dragging``, ``dropped``, ``handle``,
+    ``choose`` and ``seek``.
+
+    Parameters
+    ----------
+    page : str
+        By which its stream is told from those of other pages.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, page: str) -> None:
         super().__init__()
-        self._props["stream"] = STREAM
+        self._props["stream"] = f"{STREAM}?page={page}"
 
     def set(self, **settings: Any) -> None:
         """Change opacity, layout, tool, drawOn, hidden or selected."""
@@ -53,6 +58,10 @@ class Viewport(
         """Mark chosen faces, the best first."""
         self.run_method("choose", list(marks))
 
+    def rest(self) -> None:
+        """End playing: show the pose again."""
+        self.run_method("rest")
+
     def picture(self, name: str) -> None:
         """Let the browser save what it shows as a PNG file."""
         self.run_method("picture", name)
@@ -72,3 +81,15 @@ class Pad(Element, component="browser/pad.js"):
         if self._props["value"] != [x, y]:
             self._props["value"] = [x, y]
             self.update()
+
+
+class Timeline(Element, component="browser/timeline.js"):
+    """Play, scrub, speed and loop, timed by the browser; what moves is the viewport of the page."""
+
+    def load(self, facts: Mapping[str, Any]) -> None:
+        """Show a take: its `number`, `duration` [s], `rate` and `curve` (0..1)."""
+        self.run_method("load", dict(facts))
+
+    def toggle(self) -> None:
+        """Play or pause."""
+        self.run_method("toggle")

@@ -10,7 +10,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from risorius._check import FloatArray
 from risorius.controls.control import Control, Pose
 from risorius.errors import ParameterError, RisoriusError
 from risorius.rig.rig import Rig
@@ -20,10 +19,11 @@ from risorius.studio.document import Document, Work
 from risorius.studio.heat import heat_of, paint
 from risorius.studio.hub import Hub
 from risorius.studio.jobs import Job
+from risorius.studio.moment import Moment, Played
 from risorius.studio.scene import GROUPS, Stage, stage_of
 from risorius.studio.subject import Subject, build_subject
 
-__all__ = ["Show", "Workshop"]
+__all__ = ["Show", "Workshop", "same_face"]
 
 Result = TypeVar("Result")
 
@@ -38,13 +38,13 @@ class Show:
         One of `HEATS`.
     selected : str
         Muscle, with or without side; empty for none.
-    played : (n, 3) float64 or None
-        Input vertices that stand in for the pose while a stream plays [mm].
+    played : callable or None
+        Gives what stands in for the pose, while a stream plays for example.
     """
 
     heat: str = "none"
     selected: str = ""
-    played: FloatArray | None = None
+    played: Played | None = None
 
 
 class Workshop:
@@ -97,7 +97,7 @@ class Workshop:
         return await loop.run_in_executor(self._worker, lambda: function(*arguments))
 
     def tell(self, what: str) -> None:
-        """Tell all pages that something changed: "document", "face", "pose", "show", "problem"."""
+        """Tell all pages what changed: document, face, pose, show, problem, bake or stream."""
         for listener in tuple(self.listeners):
             listener(what)
 
@@ -223,7 +223,7 @@ class Workshop:
             await self._wish.wait()
             self._wish.clear()
             work = self.draft or self.document.work
-            if self.subject is None or not _same_face(work, self.subject.work):
+            if self.subject is None or not same_face(work, self.subject.work):
                 await self._build(work)
             if self.stage is not None:
                 await self.hub.ready()
@@ -279,7 +279,8 @@ class Workshop:
             self._wish.set()
 
 
-def _same_face(work: Work, other: Work) -> bool:
+def same_face(work: Work, other: Work) -> bool:
+    """Tell whether two works have the same face, whatever its poses."""
     names = ("muscle_map", "vectors", "landmarks")
     same = all(getattr(work, name) is getattr(other, name) for name in names)
     bare = {"poses": {}, "inline": {}, "shapes": ("singles",)}
@@ -316,12 +317,14 @@ def _frame(
     stage: Stage, pose: Pose, show: Show, groups: set[str], numbers: tuple[int, int]
 ) -> bytes:
     subject = stage.subject
-    positions = subject.face.pose(pose) if show.played is None else show.played
-    posed = stage.posed(pose if show.played is None else {}, positions, groups)
+    if show.played is None:
+        moment = Moment(stage.posed(pose, subject.face.pose(pose), groups))
+    else:
+        moment = show.played(stage, groups)
     heat = None
     if show.heat != "none":
         names = (show.selected,) if show.selected else ()
-        heat = heat_of(show.heat, subject, posed["skin"], muscles=names)
+        heat = heat_of(show.heat, subject, moment.meshes["skin"], muscles=names)
     rest = {each.name: each.mesh.positions for each in stage.meshes}
     colours = {} if heat is None else {"skin": paint(heat[0], heat[1])}
-    return frames.frame(rest, posed, epoch=numbers[0], serial=numbers[1], paint=colours)
+    return frames.frame(rest, moment, epoch=numbers[0], serial=numbers[1], paint=colours)

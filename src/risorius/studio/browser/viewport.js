@@ -22,6 +22,7 @@ export default {
     overlay(content) { this.viewport.overlay.show(content); },
     look(preset) { this.viewport.views.look(preset); },
     choose(marks) { this.viewport.mark(marks); },
+    rest() { this.viewport.player.rest(); },
     picture(name) { this.viewport.picture(name); },
   },
 };

@@ -13,9 +13,11 @@ from risorius.rig.quality import QualityReport, inspect_rig, shortcomings
 from risorius.rig.rig import Rig
 from risorius.studio.exports import KINDS, export_rig
 from risorius.studio.jobs import Job
+from risorius.studio.moment import Moment
 from risorius.studio.offenders import offenders_of
 from risorius.studio.panel import Panel, group, heading
 from risorius.studio.panels.progress import Progress
+from risorius.studio.scene import Stage
 
 __all__ = ["ExportPanel"]
 
@@ -135,7 +137,11 @@ class ExportPanel(Panel):
     def _point_at(self, rig: Rig, report: QualityReport, name: str) -> None:
         """Show a shape and the vertices that a finding is about."""
         positions = rig.frame.to_canonical(rig.posed({name: 1.0}))
-        self.shop.present(played=positions)
+
+        def moment(stage: Stage, groups: set[str]) -> Moment:
+            return Moment(stage.posed(rig.target(name).pose, positions, groups))
+
+        self.shop.present(played=moment)
         handles: list[dict[str, Any]] = []
         for what, vertices in offenders_of(report.shape(name)).items():
             for vertex in vertices[:200]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
-import time
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -11,26 +10,36 @@ from nicegui import ui
 from nicegui.events import UploadEventArguments, ValueChangeEventArguments
 
 from risorius.controls.presets import EMOTIONS
-from risorius.controls.shape_sets import SHAPE_SETS
 from risorius.controls.stream import Stream
-from risorius.errors import FormatError, ParameterError
-from risorius.io.motion import stream_endings
+from risorius.errors import ParameterError, RisoriusError
+from risorius.io.json_fields import Fields
+from risorius.io.motion import read_stream, stream_endings
 from risorius.playback.emotion_timing import emotion_stream
+from risorius.studio import frames
 from risorius.studio.guard import inside
+from risorius.studio.hub import Connection
 from risorius.studio.jobs import Job
 from risorius.studio.panel import Panel, group, heading
+from risorius.studio.panels.bake_line import BakeLine
 from risorius.studio.panels.progress import Progress
-from risorius.studio.take import Take, open_take
+from risorius.studio.stage_rig import LARGEST
+from risorius.studio.stated import Message
+from risorius.studio.take import Take, Timed, open_take, rehearse
 from risorius.studio.uploads import keep_upload
+from risorius.studio.viewport import Timeline
 
 __all__ = ["PlayPanel"]
 
-_TICK = 1.0 / 25.0
-_SPEEDS = {0.25: "¼", 0.5: "½", 1.0: "1", 2.0: "2"}
+_NUMBERS = itertools.count(1)
+_HINT = "Drag along the curve, or <b>Space</b> plays and pauses. <b>Record</b> writes a file."
 
 
 class PlayPanel(Panel):
-    """Streams on a timeline."""
+    """Streams on a timeline.
+
+    A take is shown by the page alone, from baked targets that it is sent once; until these are
+    there, or where they are too many, every picture is a frame of the studio.
+    """
 
     name = "Play"
     icon = "play_circle"
@@ -38,18 +47,18 @@ class PlayPanel(Panel):
 
     def build(self) -> None:
         """Make the elements."""
-        self.take_: Take | None = None
-        self.now = 0.0
-        self.is_playing = False
-        self._task: asyncio.Task[None] | None = None
+        self.timed: Timed | None = None
+        self.stream: Stream | None = None
+        self.number = 0
+        self._sent: tuple[Connection, int] | None = None
         heading("Play", "Motion of any standard moves the face; drag along the timeline.")
         with group("Motion"):
-            upload = ui.upload(
+            self._upload_box = ui.upload(
                 label="drop a take here, or click +", auto_upload=True, max_file_size=64 << 20,
                 on_upload=self.page.safely(self._upload),
             )  # fmt: skip
-            upload.props("flat bordered dense accept='.fap,.csv,.json'").style("width:100%")
-            upload.props("data-mark=take-upload")
+            self._upload_box.props("flat bordered dense accept='.fap,.csv,.json'")
+            self._upload_box.style("width:100%").props("data-mark=take-upload")
             self._files = ui.select([], label="in the project's folder").props("dense")
             self._files.style("width:100%").props("data-mark=take-file")
             self._files.on_value_change(self.page.safely(self._choose))
@@ -60,29 +69,21 @@ class PlayPanel(Panel):
                     ).props("flat dense no-caps").classes("st-chip").props(f"data-mark=play-{name}")
         with group("Timeline") as self._line:
             self._title = ui.label().classes("st-name").props("data-mark=take-title")
-            self._curve = ui.html("", sanitize=False).style("width:100%;height:54px")
-            self._slider = ui.slider(min=0.0, max=1.0, step=0.01, value=0.0).props("dense")
-            self._slider.props("data-mark=timeline")
-            self._slider.on(
-                "update:model-value", self.page.safely(lambda e: self._scrub(e.args)), throttle=0.03
-            )
-            with ui.row().style("gap:6px;align-items:center"):
-                self._button = ui.button(icon="play_arrow", on_click=self._toggle)
-                self._button.props("flat round dense").props("data-mark=play")
-                self._clock = ui.label("0.00 s").classes("st-number").props("data-mark=clock")
-                self._speed = ui.toggle(_SPEEDS, value=1.0).props("dense flat size=sm")
-                self._loop = ui.switch("loop", value=True).props("dense")
+            self._timeline = Timeline()
             with ui.row().style("gap:6px"):
                 for text, ending in (("Record GLB", ".glb"), ("Record film", ".mp4")):
                     ui.button(
                         text, icon="fiber_manual_record",
                         on_click=self.page.safely(lambda e=ending: self._record(e)),
-                    ).props("flat dense no-caps").classes("st-chip")  # fmt: skip
+                    ).props("flat dense no-caps").classes("st-chip").props(
+                        f"data-mark=record-{ending[1:]}"
+                    )  # fmt: skip
         self._line.set_visibility(False)
         self.progress = Progress(self.page)
+        self.bake_line = BakeLine(self.page)
 
     def enter(self) -> None:
-        """Look for takes in the folder."""
+        """Look for takes in the folder, and bake."""
         folder, own = self.shop.document.keeper.folder, self.shop.document.keeper.path.name
         names = sorted(
             file.name
@@ -93,20 +94,44 @@ class PlayPanel(Panel):
             and not file.name.startswith(".")
         )
         self._files.set_options(names)
+        self.page.bakery.want(self)
+        if self.timed is not None:
+            self._present()
 
     def leave(self) -> None:
         """Stop, and show the pose again."""
-        self._pause()
-        if self.shop.show.played is not None:
-            self.shop.present(played=None)
+        self.page.bakery.leave(self)
+        self.page.view.rest()
+        self._still()
+
+    def refresh(self, what: str) -> None:
+        """Follow the face, its bake and the stream."""
+        if what == "bake":
+            self.bake_line.follow()
+            if isinstance(self.timed, Take):
+                self._send(self.timed)
+            elif self.page.bakery.ready is not None:
+                self._again()
+        elif what == "stream" and isinstance(self.timed, Take):
+            self._send(self.timed)
+        elif what == "face" and self.stream is not None:
+            self._again()
 
     # -- takes ------------------------------------------------------------------------------
 
     async def _upload(self, event: UploadEventArguments) -> None:
         folder, data = self.shop.document.keeper.folder, await event.file.read()
+        known = set(folder.iterdir())
         path = keep_upload(folder, event.file.name, data, endings=stream_endings())
-        self.enter()
-        await self._open(path)
+        self._upload_box.reset()
+        try:
+            await self._open(path)
+        except RisoriusError:
+            if path not in known:
+                path.unlink(missing_ok=True)  # what cannot be played is no part of the project
+            raise
+        finally:
+            self.enter()
 
     async def _choose(self, event: ValueChangeEventArguments[Any]) -> None:
         if event.value:
@@ -117,107 +142,127 @@ class PlayPanel(Panel):
         await self._open(emotion_stream({name: 1.0}))
 
     async def _open(self, source: Path | Stream) -> None:
-        self._pause()
-
-        def work(job: Job) -> Take:
-            rig = self.shop.rig(SHAPE_SETS, job)
-            return open_take(source, rig, self.subject.presets, job)
-
-        take = await self.progress.run("opening the take", work)
-        if take is None:
-            return
-        self.take_ = take
         name = source.name if isinstance(source, Path) else source.source
-        self._title.set_text(f"{name}: {take.duration:.2f} s at {take.rate:g} frames per second")
-        self._slider._props["max"] = max(take.duration, 0.01)
-        self._slider.update()
-        self._curve.set_content(_svg(take))
+        face = self.subject
+
+        def read(job: Job) -> tuple[Stream, Timed | None]:
+            stream = source if isinstance(source, Stream) else read_stream(source)
+            return stream, rehearse(stream, face.face, face.presets, job)
+
+        found = await self.progress.run("opening the take", read)
+        if found is None:
+            return
+        stream, timed = found
+        if timed is None or self.page.bakery.ready is not None:
+            timed = await self._baked(stream)
+        if timed is None:
+            return
+        self.stream, self.timed, self.number = stream, timed, next(_NUMBERS)
+        seconds = (timed.frame_count - 1) / timed.rate
+        self._title.set_text(f"{name}: {seconds:.2f} s at {timed.rate:g} frames per second")
         self._line.set_visibility(True)
-        self._show(0.0)
-        missing = take.player.unmatched
+        self._present()
+        missing = timed.player.unmatched
         if missing:
-            self.page.tell(f"not played: {', '.join(list(missing)[:6])}")
+            some, more = list(missing)[:6], len(missing) - 6
+            rest = f" and {more} more" if more > 0 else ""
+            self.page.tell(f"not played: {', '.join(some)}{rest}")
 
-    # -- time -------------------------------------------------------------------------------
+    async def _baked(self, stream: Stream) -> Take | None:
+        """Bind a stream to the baked face, which is waited for."""
+        self.page.bakery.want(self)
+        rig, presets = await self.page.bakery.rig(), self.subject.presets
+        return await self.progress.run(
+            "opening the take", lambda job: open_take(stream, rig, presets, job)
+        )
 
-    def _require(self) -> Take:
-        if self.take_ is None:
-            raise ParameterError("play: open a take first")
-        return self.take_
+    def _again(self) -> None:
+        """Bind the open take to the face as it is now, without a word and at its place."""
+        stream, face = self.stream, self.shop.subject
+        if stream is None or face is None:
+            return
 
-    def _show(self, now: float, *, slider: bool = True) -> None:
-        take = self._require()
-        self.now = min(max(now, 0.0), take.duration)
-        self.shop.present(played=take.positions(self.now))
-        self._clock.set_text(f"{self.now:.2f} s")
-        if slider:
-            self._slider.set_value(self.now)
+        async def bind() -> None:
+            rig = self.page.bakery.ready
+            if rig is not None:
+                take = await self.progress.quietly(
+                    lambda job: open_take(stream, rig, face.presets, job)
+                )
+            else:
+                take = await self.progress.quietly(
+                    lambda job: rehearse(stream, face.face, face.presets, job)
+                )
+            if take is not None and self.stream is stream and self.shop.subject is face:
+                self.timed = take
+                self._present()
 
-    def _scrub(self, value: object) -> None:
-        if not isinstance(value, int | float):
-            raise FormatError("timeline: expected a number")
-        self._pause()
-        self._show(float(value), slider=False)
+        self.page.start(bind)
 
-    def _toggle(self) -> None:
-        if self.is_playing:
-            self._pause()
-        elif self.take_ is not None:
-            self.is_playing = True
-            self._button.props("icon=pause")
-            self._task = asyncio.create_task(self._run())
+    # -- showing ----------------------------------------------------------------------------
 
-    def _pause(self) -> None:
-        self.is_playing = False
-        self._button.props("icon=play_arrow")
-        if self._task is not None:
-            self._task.cancel()
-            self._task = None
+    def _present(self) -> None:
+        """Hand the take to the page."""
+        timed = self.timed
+        if timed is None or self.page.active is not self:
+            return
+        if isinstance(timed, Take):
+            self._send(timed)
+        self._timeline.load(
+            {
+                "number": self.number,
+                "rate": timed.rate,
+                "duration": (timed.frame_count - 1) / timed.rate,
+                "curve": timed.curve().round(3).tolist(),
+            }
+        )
+        self.page.say(_HINT)
 
-    async def _run(self) -> None:
-        take, last = self._require(), time.monotonic()
-        while self.is_playing:
-            await asyncio.sleep(_TICK)
-            moment = time.monotonic()
-            now = self.now + (moment - last) * float(self._speed.value or 1.0)
-            last = moment
-            if now > take.duration:
-                if not self._loop.value:
-                    self._show(take.duration)
-                    self._pause()
-                    return
-                now = 0.0
-            self._show(now)
+    def _send(self, take: Take) -> None:
+        """Send targets, once for each stream and bake, and the weights of the take."""
+        connection = self.shop.hub.of(self.page.client.id)
+        bakery = self.page.bakery
+        if connection is None or bakery.ready is not take.rig or self.page.active is not self:
+            return
+        if take.rig.entry_count > LARGEST:
+            return
+        mark = (connection, bakery.number)
+        epoch = self.shop.epoch
+        if self._sent != mark:
+            connection.put(frames.targets(take.rig, epoch=epoch, number=bakery.number))
+            self._sent = mark
+        facts = {"number": self.number, "targets": bakery.number, "rate": take.rate}
+        if take.turns is not None:
+            facts["pivot"] = take.turns.pivot.tolist()
+        rotations = None if take.turns is None else take.turns.rotations
+        connection.put(frames.take(take.weights, rotations, epoch=epoch, facts=facts))
+        self._still()
+
+    def _still(self) -> None:
+        if self.shop.show.played is not None:
+            self.shop.present(played=None)
+
+    def take(self, event: str, message: Message) -> None:
+        """Take a wish of the page for a frame, while it cannot show the take alone."""
+        if event == "seek" and self.timed is not None:
+            time = Fields(message, "timeline").number("time")
+            self.shop.present(played=self.timed.shown(time))
 
     async def _record(self, ending: str) -> None:
-        take = self._require()
+        if self.stream is None:
+            raise ParameterError("play: open a take first")
+        take = self.timed if isinstance(self.timed, Take) else await self._baked(self.stream)
+        if take is None:
+            return
         stem = self.shop.document.keeper.path.stem
         path = inside(self.shop.document.keeper.folder, f"{stem} take{ending}")
-
-        def work(job: Job) -> Path:
-            take.record(path, job)
-            return path
-
-        written = await self.progress.run("recording", work)
-        if written is not None:
-            ui.download.file(written)
-            self.page.tell(f"wrote {written.name}")
+        count = await self.progress.run("recording", lambda job: take.record(path, job))
+        if count is not None:
+            ui.download.file(path)
+            self.page.tell(f"wrote {path.name}: {count} frames")
 
     def key(self, key: str) -> bool:
         """Take a key."""
-        if key != " " or self.take_ is None:
+        if key != " " or self.timed is None:
             return False
-        self._toggle()
+        self._timeline.toggle()
         return True
-
-
-def _svg(take: Take) -> str:
-    curve = take.curve()
-    count = max(len(curve) - 1, 1)
-    points = " ".join(f"{300 * k / count:.1f},{50 - 44 * v:.1f}" for k, v in enumerate(curve))
-    return (
-        '<svg viewBox="0 0 300 54" preserveAspectRatio="none" style="width:100%;height:54px">'
-        '<rect width="300" height="54" fill="#191c1f"/>'
-        f'<polyline points="{points}" fill="none" stroke="#e08a63" stroke-width="1.4" '
-        'vector-effect="non-scaling-stroke"/></svg>'
-    )

@@ -45,6 +45,16 @@ class Progress:
         if self._job is not None:
             self._job.cancel()
 
+    async def quietly(self, work: Callable[[Job], Result]) -> Result:
+        """Run short `work` in a thread beside everything else.
+
+        Raises
+        ------
+        RisoriusError
+            What the work raises.
+        """
+        return await asyncio.to_thread(work, Job(""))
+
     async def run(self, title: str, work: Callable[[Job], Result]) -> Result | None:
         """Run `work` in a thread; return what it gives, None if it was stopped.
 

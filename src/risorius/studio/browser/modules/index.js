@@ -1,6 +1,7 @@
 // One viewport: meshes, views, pointer, overlay and the stream that feeds them.
 import { MeshBook } from "./meshes.js";
 import { Overlay } from "./overlay.js";
+import { Player } from "./player.js";
 import { Pointer } from "./pointer.js";
 import { Stream } from "./stream.js";
 import { Views } from "./views.js";
@@ -18,20 +19,23 @@ export class Viewport {
       drawOn: [],
       hidden: [],
       selected: "",
+      painted: false,
     };
-    this.stats = { drawn: 0, received: 0, bytes: 0, serial: 0, sceneCount: 0 };
+    this.stats = { drawn: 0, alone: 0, received: 0, bytes: 0, serial: 0, sceneCount: 0 };
     this.touch = () => { this.dirty = true; };
     this.meshes = new MeshBook(this.touch);
     this.views = new Views(this);
     this.overlay = new Overlay(this);
     this.pointer = new Pointer(this);
+    this.player = new Player(this);
     this.stream = new Stream(address, this);
     this.closed = false;
     this.observer = new ResizeObserver(this.touch);
     this.observer.observe(root);
-    const loop = () => {
+    const loop = (now) => {
       if (this.closed) return;
       requestAnimationFrame(loop);
+      this.player.tick(now);
       if (this.dirty) {
         this.dirty = false;
         this.views.draw();
@@ -64,6 +68,11 @@ export class Viewport {
       link.click();
       setTimeout(() => URL.revokeObjectURL(link.href), 5000);
     }, "image/png");
+  }
+
+  // Vertices of a mesh as they are shown; for tests.
+  shown(name) {
+    return Array.from(this.meshes.shown(name, this.views.renderer));
   }
 
   // Page coordinates of a point in millimetres; for tests and for labels.

@@ -1,5 +1,6 @@
 // Meshes by name, in groups: brought by scenes, moved and painted by frames.
 import { THREE } from "nicegui-scene";
+import { Morph } from "./morph.js";
 
 const STEP = 1 / 256;
 const ORDER = { skull: 0, muscles: 1, parts: 2, skin: 3 };
@@ -21,12 +22,18 @@ export class MeshBook {
   constructor(touch) {
     this.touch = touch;
     this.scene = new THREE.Scene();
+    // Everything that turns with the head.
+    this.root = new THREE.Group();
+    this.root.matrixAutoUpdate = false;
+    this.scene.add(this.root);
+    this.morph = new Morph();
     this.byName = new Map();
     this.sets = [];
     this.settings = null;
   }
 
   replace(head, data, offset) {
+    this.morph.drop();
     for (const [name, entry] of [...this.byName]) {
       if (head.replaced.includes(entry.group)) this.remove(name);
     }
@@ -60,20 +67,40 @@ export class MeshBook {
     mesh.name = entry.name;
     mesh.frustumCulled = false;
     mesh.renderOrder = ORDER[entry.group];
-    this.scene.add(mesh);
+    this.morph.patch(entry.name, material);
+    this.root.add(mesh);
     this.byName.set(entry.name, { mesh, group: entry.group, rest, paint, painted: false });
   }
 
   remove(name) {
     const entry = this.byName.get(name);
     if (!entry) return;
-    this.scene.remove(entry.mesh);
+    this.root.remove(entry.mesh);
+    this.morph.forget(name);
     entry.mesh.geometry.dispose();
     entry.mesh.material.dispose();
     this.byName.delete(name);
   }
 
+  // Turn the whole head about a point: its place and a quaternion (x, y, z, w), or nothing.
+  turn(numbers) {
+    const [a, b, c, ...q] = numbers || [0, 0, 0, 0, 0, 0, 1];
+    const pivot = new THREE.Vector3(a, b, c), turn = new THREE.Quaternion(...q);
+    const shift = pivot.clone().sub(pivot.clone().applyQuaternion(turn));
+    this.root.matrix.compose(shift, turn, new THREE.Vector3(1, 1, 1));
+    this.root.matrixWorldNeedsUpdate = true;
+  }
+
+  // Places of a mesh as they are shown, three numbers for each vertex.
+  shown(name, renderer) {
+    const entry = this.byName.get(name);
+    const moved = this.morph.active && this.morph.first.has(name);
+    if (moved) return this.morph.read(name, entry.rest.length / 3, renderer);
+    return entry.mesh.geometry.attributes.position.array;
+  }
+
   move(head, data, offset) {
+    if (!this.morph.active) this.turn(head.turn);
     for (const name of head.moved) {
       const entry = this.byName.get(name);
       if (!entry) return;

@@ -1,6 +1,8 @@
 // The binary stream from the studio; formats as in frames.py. Every message is acknowledged once
 // it has been drawn, so the server never has more than a few under way.
-const SCENE = 1, FRAME = 2, CANDIDATES = 3;
+import { Morph } from "./morph.js";
+
+const SCENE = 1, FRAME = 2, CANDIDATES = 3, TARGETS = 4, TAKE = 5;
 
 export class Stream {
   constructor(address, viewport) {
@@ -57,6 +59,10 @@ export class Stream {
         stats.serial = serial;
       } else if (kind === CANDIDATES) {
         meshes.bring(head, data, 16 + length);
+      } else if (kind === TARGETS && Morph.can(this.viewport.views.renderer)) {
+        meshes.morph.load(head, data, 16 + length, meshes);
+      } else if (kind === TAKE) {
+        this.viewport.player.bring(head, data, 16 + length);
       }
     }
     this.seen += 1;
