@@ -17,7 +17,7 @@ import numpy as np
 
 from risorius.anatomy.template import builtin_head
 from risorius.project import Project, write_project
-from risorius.studio.document import work_of
+from risorius.studio.work import work_of
 from risorius.studio.scene import stage_of
 from risorius.studio.subject import build_subject
 from risorius.studio.workshop import Show, _frame

@@ -16,7 +16,7 @@ from risorius.layered import default_muscle_map
 from risorius.layered.muscle import Sheet
 from risorius.project import Project
 from risorius.spatial.closest import closest_points
-from risorius.studio.document import Work, work_of
+from risorius.studio.work import Work, work_of
 from risorius.studio.jobs import Job
 from risorius.studio.places import Place, place_of
 from risorius.studio.scene import Stage, stage_of

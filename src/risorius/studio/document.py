@@ -1,131 +1,20 @@
-"""What a person makes in the studio: immutable states, their history, and the file they live in."""
+"""What a person makes in the studio: states, their history, and the file they live in."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
-from risorius.controls.control import Pose
-from risorius.errors import ParameterError, RisoriusError
-from risorius.io.landmarks import landmarks_to_json
-from risorius.landmarks.landmark_set import LandmarkSpec
-from risorius.layered.muscle_map import MuscleMap
-from risorius.project import Project, landmarks_of, read_mesh, vectors_of
-from risorius.project.layered import muscle_map_of
+from risorius.errors import FormatError
+from risorius.project import Project
+from risorius.project.files import parse_project, project_bytes, project_document
+from risorius.studio.history import History, Step
+from risorius.studio.journal import Journal
 from risorius.studio.keeper import Keeper
-from risorius.vectormuscle.vector_set import VectorSet
+from risorius.studio.work import Shelf, Work, originals_of, project_of, work_of
 
-__all__ = ["CURRENT", "Document", "Step", "Work", "originals_of", "project_of", "work_of"]
-
-CURRENT = "current"
-"""Name under which a project keeps the pose that its sliders show."""
-
-_LONGEST_HISTORY = 500
-_HANDED_ON = ("presets", "recipe")
-
-
-@dataclass(frozen=True, eq=False)
-class Work:
-    """Everything human-made, at one moment.
-
-    Parameters
-    ----------
-    project : Project
-        Head, method, settings; without the recipes below.
-    muscle_map : MuscleMap
-    vectors : VectorSet
-    landmarks : mapping of str to LandmarkSpec
-        Of the head, as its file counts.
-    pose : mapping of str to float
-        What the sliders show.
-    """
-
-    project: Project
-    muscle_map: MuscleMap
-    vectors: VectorSet
-    landmarks: Mapping[str, LandmarkSpec]
-    pose: Pose = field(default_factory=dict[str, float])
-
-    @property
-    def poses(self) -> Mapping[str, Pose]:
-        """Poses that a person keeps, by name."""
-        return {name: pose for name, pose in self.project.poses.items() if name != CURRENT}
-
-
-@dataclass(frozen=True, eq=False)
-class Step:
-    """One entry of the history: what was done, and what it led to."""
-
-    label: str
-    work: Work
-    gesture: str = ""
-
-
-def work_of(project: Project) -> Work:
-    """Read everything that a project names.
-
-    Raises
-    ------
-    RisoriusError
-        If something is missing or malformed.
-    """
-    _, carried = read_mesh(project)
-    return Work(
-        project=replace(project, inline=_untouched(project)),
-        muscle_map=muscle_map_of(project),
-        vectors=vectors_of(project),
-        landmarks=dict(landmarks_of(project, carried)),
-        pose=dict(project.poses.get(CURRENT, {})),
-    )
-
-
-def project_of(
-    work: Work, before: Project, originals: Mapping[str, dict[str, Any] | None]
-) -> Project:
-    """Return the project with every recipe in it that a person has changed.
-
-    Parameters
-    ----------
-    work : Work
-    before : Project
-        As it was opened.
-    originals : mapping of str to dict
-        Recipes as they ship or stand in files that the project names; see `originals_of`.
-    """
-    inline: dict[str, Mapping[str, Any]] = {}
-    for name in _HANDED_ON:
-        if name in before.inline:
-            inline[name] = before.inline[name]
-    content = {
-        "muscle_map": work.muscle_map.to_json(),
-        "vector_set": work.vectors.to_json(),
-        "landmarks": _landmark_document(work.landmarks),
-    }
-    for name, now in content.items():
-        foreign = name == "landmarks" and before.head != work.project.head
-        if foreign or now != originals.get(name):
-            inline[name] = now
-    poses = dict(work.poses)
-    if work.pose:
-        poses[CURRENT] = dict(work.pose)
-    return replace(work.project, inline=inline, poses=poses)
-
-
-def originals_of(project: Project) -> dict[str, dict[str, Any] | None]:
-    """Return the recipes that a project gets from outside itself, as they stand in files.
-
-    None where such a file has gone: what was read of it is then kept in the project.
-    """
-    bare = replace(project, inline={})
-    readers: dict[str, Callable[[], dict[str, Any]]] = {
-        "muscle_map": lambda: muscle_map_of(bare).to_json(),
-        "vector_set": lambda: vectors_of(bare).to_json(),
-        "landmarks": lambda: _landmark_document(landmarks_of(bare, read_mesh(bare)[1])),
-    }
-    return {name: _quiet(reader) for name, reader in readers.items()}
+__all__ = ["Document"]
 
 
 class Document:
@@ -137,15 +26,25 @@ class Document:
         Of the file.
     project : Project
         As opened.
-    work : Work
     """
 
-    def __init__(self, keeper: Keeper, project: Project, work: Work) -> None:
+    def __init__(self, keeper: Keeper, project: Project) -> None:
         self.keeper = keeper
+        self.notice = ""
         self._opened = project
         self._originals = originals_of(project)
-        self._steps = [Step("Opened", work)]
-        self._place = 0
+        self._shelf = Shelf()
+        work = work_of(project, self._shelf)
+        content = keeper.content
+        if content is None:
+            content = project_bytes(project, keeper.path)
+        self._journal = Journal(keeper.path)
+        found = self._remembered(content)
+        if found is None:
+            record = self._journal.record(project_document(project, keeper.path), content)
+            found = History([Step("Opened", work=work, record=record)])
+        self._history = found
+        self._history.steps[found.place] = replace(found.present, work=work)
 
     @staticmethod
     def open(path: Path, project: Project | None = None) -> Document:
@@ -166,31 +65,40 @@ class Document:
         keeper = Keeper.take(path)
         with ExitStack() as refused:
             refused.callback(keeper.release)
-            found = keeper.read() or project or Project()
-            document = Document(keeper, found, work_of(found))
+            document = Document(keeper, keeper.read() or project or Project())
             refused.pop_all()
         return document
+
+    def _remembered(self, content: bytes) -> History | None:
+        """Return the history of the studio before; what cannot be read is told of in `notice`."""
+        try:
+            return self._journal.read(content)
+        except FormatError as error:
+            self.notice = f"{error}; the project is whole, but undo begins here"
+        self._journal = Journal(self.keeper.path)
+        return None
 
     @property
     def work(self) -> Work:
         """The present state."""
-        return self._steps[self._place].work
+        work = self._history.present.work
+        assert work is not None
+        return work
 
     @property
     def history(self) -> tuple[tuple[str, ...], int]:
         """Labels of all steps, and which of them is the present one."""
-        return tuple(step.label for step in self._steps), self._place
+        return tuple(step.label for step in self._history.steps), self._history.place
 
     @property
     def undo_label(self) -> str:
         """What would be undone; empty at the start."""
-        return self._steps[self._place].label if self._place else ""
+        return self._history.undo_label
 
     @property
     def redo_label(self) -> str:
         """What would be done again; empty at the end."""
-        ahead = self._place + 1
-        return self._steps[ahead].label if ahead < len(self._steps) else ""
+        return self._history.redo_label
 
     def apply(self, label: str, work: Work, *, gesture: str = "") -> None:
         """Make `work` the present state and keep it.
@@ -202,15 +110,7 @@ class Document:
         FormatError
             If the file cannot be written; the step is done nevertheless.
         """
-        del self._steps[self._place + 1 :]
-        if gesture and self._steps[-1].gesture == gesture:
-            self._steps[-1] = Step(label, work, gesture)
-        else:
-            self._steps.append(Step(label, work, gesture))
-        if len(self._steps) > _LONGEST_HISTORY:
-            del self._steps[0]
-        self._place = len(self._steps) - 1
-        self.keep()
+        self._keep(self._history.add(Step(label, gesture, work)))
 
     def undo(self) -> str:
         """Go one step back; return what was undone.
@@ -219,12 +119,11 @@ class Document:
         ------
         ParameterError
             If nothing was done yet.
+        FormatError
+            If the step cannot be read any more, and stays undone; or the file cannot be written.
         """
-        if not self._place:
-            raise ParameterError("undo: this is where you started")
         label = self.undo_label
-        self._place -= 1
-        self.keep()
+        self._go(-1)
         return label
 
     def redo(self) -> str:
@@ -234,11 +133,10 @@ class Document:
         ------
         ParameterError
             If nothing was undone.
+        FormatError
+            As `undo`.
         """
-        if not self.redo_label:
-            raise ParameterError("redo: nothing was undone")
-        self._place += 1
-        self.keep()
+        self._go(1)
         return self.undo_label
 
     def keep(self) -> None:
@@ -249,24 +147,42 @@ class Document:
         FormatError
             If it cannot be written.
         """
-        self.keeper.write(project_of(self.work, self._opened, self._originals))
+        self._keep(None)
 
+    def _go(self, way: int) -> None:
+        history = self._history
+        place = history.beside(way)
+        step = history.steps[place]
+        if step.work is None:
+            assert step.record is not None
+            document = self._journal.document(step.record)
+            project = parse_project(document, self.keeper.path)
+            history.steps[place] = replace(step, work=work_of(project, self._shelf))
+        history.place = place
+        self._keep(None)
 
-def _untouched(project: Project) -> dict[str, Mapping[str, Any]]:
-    """Return the recipes in a project that the studio hands on as they are."""
-    return {name: project.inline[name] for name in _HANDED_ON if name in project.inline}
+    def _keep(self, kept: int | None) -> None:
+        """Write the journal, then the project.
 
-
-def _quiet(reader: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
-    try:
-        return reader()
-    except RisoriusError:
-        return None
-
-
-def _landmark_document(specs: Mapping[str, LandmarkSpec]) -> dict[str, Any]:
-    return {
-        "schema": "risorius/landmarks",
-        "version": 1,
-        "landmarks": landmarks_to_json(specs),
-    }
+        Parameters
+        ----------
+        kept : int, optional
+            How many steps stay in front of the present one, if that is new.
+        """
+        history = self._history
+        moved = self.keeper.settle()
+        path = self.keeper.path
+        project = project_of(self.work, self._opened, self._originals)
+        content = project_bytes(project, path)
+        record = self._journal.record(project_document(project, path), content)
+        history.steps[history.place] = replace(history.present, record=record)
+        if moved:
+            self._journal.move(path)
+        try:
+            if kept is None:
+                self._journal.go(history)
+            else:
+                self._journal.add(history, kept)
+        except FormatError as error:
+            self.notice = f"{error}; undo works until the studio is closed"
+        self.keeper.write(content)

@@ -7,7 +7,8 @@ from io import TextIOWrapper
 from pathlib import Path
 
 from risorius.errors import FormatError
-from risorius.project import Project, read_project, write_project
+from risorius.io.atomic import write_bytes
+from risorius.project import Project, read_project
 
 __all__ = ["Keeper"]
 
@@ -80,23 +81,34 @@ class Keeper:
         """
         return read_project(self.path) if self.path.is_file() else None
 
-    def write(self, project: Project) -> None:
-        """Write the project as a whole or not at all.
+    @property
+    def content(self) -> bytes | None:
+        """What the file held when it was read or written last; None where there is none."""
+        return self._last
+
+    def settle(self) -> bool:
+        """Find the place that the next state goes to; tell whether it is another one.
 
         Where somebody else has changed the file since, it is left alone and the project goes to
         a free name, `path` from then on; `moved_from` remembers the old one.
+        """
+        found = self.path.read_bytes() if self.path.is_file() else None
+        if found is None or found == self._last:
+            return False
+        self.moved_from = self.path
+        self.path = _free(self.path)
+        return True
+
+    def write(self, content: bytes) -> None:
+        """Write the project as a whole or not at all, to where `settle` found that it goes.
 
         Raises
         ------
         FormatError
             If it cannot be written.
         """
-        found = self.path.read_bytes() if self.path.is_file() else None
-        if found != self._last and found is not None:
-            self.moved_from = self.path
-            self.path = _free(self.path)
-        write_project(project, self.path)
-        self._last = self.path.read_bytes()
+        write_bytes(self.path, content)
+        self._last = content
 
     def release(self) -> None:
         """Let go of the file."""

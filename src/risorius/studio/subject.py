@@ -15,7 +15,10 @@ from risorius.layered.workbench import Workbench
 from risorius.project import Project, face_of, presets_of, read_mesh
 from risorius.project.layered import skull_of
 from risorius.rig.face import Face
-from risorius.studio.document import Work
+from risorius.springmuscle.face import SpringFace
+from risorius.springmuscle.recipe_file import recipe_to_json
+from risorius.springmuscle.redrawing import redrawn
+from risorius.studio.work import Work
 from risorius.vectormuscle.face import VectorFace
 
 __all__ = ["Subject", "build_subject"]
@@ -59,6 +62,11 @@ class Subject:
         """The face, if it is one of vector muscles."""
         return self.face if isinstance(self.face, VectorFace) else None
 
+    @property
+    def spring_face(self) -> SpringFace | None:
+        """The face, if it is one of spring muscles."""
+        return self.face if isinstance(self.face, SpringFace) else None
+
 
 def build_subject(work: Work, before: Subject | None = None) -> Subject:
     """Build the face of a work; what `before` shares with it is taken over.
@@ -86,7 +94,7 @@ def build_subject(work: Work, before: Subject | None = None) -> Subject:
         else:
             bench = Workbench.build(head, work.muscle_map, skull=skull, mechanics=mechanics)
         return Subject(work, head, mechanics, presets, skull, bench.face.skull, bench.face, bench)
-    face = _vector_face(work, before)
+    face = _vector_face(work, before) or _spring_face(work, before)
     if face is None:
         face = face_of(_with_recipes(work), head, mechanics=mechanics)
     return Subject(work, head, mechanics, presets, skull, fitted, face, None)
@@ -142,10 +150,24 @@ def _vector_face(work: Work, before: Subject | None) -> Face | None:
     return face.with_muscles(changed)
 
 
+def _spring_face(work: Work, before: Subject | None) -> Face | None:
+    """Return the face of `before` on other outlines, if that is all that differs."""
+    face = before.spring_face if before is not None else None
+    if face is None or before is None:
+        return None
+    names = ("method", "profile", "parameters", "bones", "skull", "mandible", "skull_landmarks")
+    now, then = work.project, before.work.project
+    if any(getattr(now, name) != getattr(then, name) for name in names):
+        return None
+    old = before.work.recipe
+    return face if work.recipe is old else redrawn(face, old, work.recipe)
+
+
 def _with_recipes(work: Work) -> Project:
     recipes = {
         **work.project.inline,
         "muscle_map": work.muscle_map.to_json(),
         "vector_set": work.vectors.to_json(),
+        "recipe": recipe_to_json(work.recipe),
     }
     return replace(work.project, inline=recipes)

@@ -15,13 +15,14 @@ from risorius.errors import ParameterError, RisoriusError
 from risorius.rig.rig import Rig
 from risorius.studio import frames
 from risorius.studio.baking import bake_subject
-from risorius.studio.document import Document, Work
+from risorius.studio.document import Document
 from risorius.studio.heat import heat_of, paint
 from risorius.studio.hub import Hub
 from risorius.studio.jobs import Job
 from risorius.studio.moment import Moment, Played
 from risorius.studio.scene import GROUPS, Stage, stage_of
 from risorius.studio.subject import Subject, build_subject
+from risorius.studio.work import Work
 
 __all__ = ["Show", "Workshop", "same_face"]
 
@@ -66,6 +67,8 @@ class Workshop:
         self.pose: dict[str, float] = dict(document.work.pose)
         self.show = Show()
         self.draft: Work | None = None
+        self.draft_problem = ""
+        self._refused: Work | None = None
         self.problem = ""
         self.built = asyncio.Event()
         self._wanted: dict[object, frozenset[str]] = {}
@@ -124,15 +127,21 @@ class Workshop:
 
     def undo(self) -> str:
         """Go one step back; return what was undone."""
-        label = self.document.undo()
-        self._refresh()
-        return label
+        return self._travel(self.document.undo)
 
     def redo(self) -> str:
         """Go one step ahead; return what was done."""
-        label = self.document.redo()
-        self._refresh()
-        return label
+        return self._travel(self.document.redo)
+
+    def _travel(self, go: Callable[[], str]) -> str:
+        """Go to another step; where it is reached but not kept, the face follows all the same."""
+        before = self.document.history[1]
+        try:
+            return go()
+        finally:
+            if self.document.history[1] != before:
+                self.draft = None
+                self._refresh()
 
     def set_pose(self, values: Mapping[str, float]) -> None:
         """Move the face; the document follows with `keep_pose`."""
@@ -223,22 +232,32 @@ class Workshop:
             await self._wish.wait()
             self._wish.clear()
             work = self.draft or self.document.work
-            if self.subject is None or not same_face(work, self.subject.work):
+            if self._is_new(work):
                 await self._build(work)
             if self.stage is not None:
                 await self.hub.ready()
                 self._wish.clear()
                 await self._pose()
 
+    def _is_new(self, work: Work) -> bool:
+        """Return whether the face of a work has to be built and was not refused just now."""
+        known = [each for each in (self.subject and self.subject.work, self._refused) if each]
+        return not any(same_face(work, each) for each in known)
+
     async def _build(self, work: Work) -> None:
+        drafted = work is self.draft
         try:
             stage = await self.work(_built, work, self.subject, self.stage)
         except RisoriusError as error:
-            self.complain(str(error))
-            if self.subject is not None:
-                # Not again until something else is wished.
-                self.subject = replace(self.subject, work=work)
+            # Not again until something else is wished.
+            self._refused = work
+            if drafted:
+                self.draft_problem = str(error)
+                self.tell("draft")
+            else:
+                self.complain(str(error))
             return
+        self._refused, self.draft_problem = None, ""
         same_head = self.stage is not None and stage.lasting == self.stage.lasting
         renewed = self.stage is None or stage.meshes != self.stage.meshes
         self.subject, self.stage = stage.subject, stage
@@ -281,7 +300,7 @@ class Workshop:
 
 def same_face(work: Work, other: Work) -> bool:
     """Tell whether two works have the same face, whatever its poses."""
-    names = ("muscle_map", "vectors", "landmarks")
+    names = ("muscle_map", "vectors", "recipe", "landmarks")
     same = all(getattr(work, name) is getattr(other, name) for name in names)
     bare = {"poses": {}, "inline": {}, "shapes": ("singles",)}
     return same and replace(work.project, **bare) == replace(other.project, **bare)

@@ -23,10 +23,10 @@ from risorius.layered.editing import (
     without_point,
 )
 from risorius.layered.muscle import Muscle, Sheet
-from risorius.studio.document import Work
 from risorius.studio.places import place_of
 from risorius.studio.regions import title_of
 from risorius.studio.stated import Message
+from risorius.studio.work import Work
 from risorius.vectormuscle.editing import moved_end, with_numbers
 
 if TYPE_CHECKING:

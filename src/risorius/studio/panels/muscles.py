@@ -10,7 +10,6 @@ from nicegui.events import ValueChangeEventArguments
 
 from risorius.errors import ParameterError
 from risorius.layered.editing import free_name, with_muscle, without_muscle
-from risorius.studio.document import Work
 from risorius.studio.panel import Panel, group, heading
 from risorius.studio.panels.heat import HeatGroup
 from risorius.studio.panels.muscle_editor import MuscleEditor
@@ -18,6 +17,7 @@ from risorius.studio.panels.muscle_list import MuscleList
 from risorius.studio.places import place_of
 from risorius.studio.sketch import Sketch, SketchKind
 from risorius.studio.stated import Message
+from risorius.studio.work import Work
 from risorius.vectormuscle.editing import added, removed
 
 __all__ = ["MusclePanel"]

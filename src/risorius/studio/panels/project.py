@@ -13,9 +13,9 @@ from risorius import _formats
 from risorius.errors import FormatError, RisoriusError
 from risorius.head.head import Head
 from risorius.project import PROFILES
-from risorius.studio.document import Work, work_of
 from risorius.studio.panel import Panel, group, heading
 from risorius.studio.uploads import keep_upload
+from risorius.studio.work import work_of
 
 __all__ = ["ProjectPanel"]
 
@@ -30,6 +30,8 @@ class ProjectPanel(Panel):
     icon = "folder_open"
     hint = "Everything is kept at once in one text file; every step can be undone."
 
+    drops = _ALL
+
     def build(self) -> None:
         """Make the elements."""
         heading("Project")
@@ -39,12 +41,12 @@ class ProjectPanel(Panel):
                 "Drop a head (OBJ, PLY, STL, GLB) and its landmarks, named like it: head.obj and "
                 "head.landmarks.json."
             ).classes("st-help")
-            upload = ui.upload(
+            self.box = ui.upload(
                 label="drop a head here, or click +", auto_upload=True, multiple=True,
                 max_file_size=256 << 20, on_upload=self.page.safely(self._upload),
             )  # fmt: skip
-            upload.props(f"flat bordered dense accept='{','.join(_ALL)}'").style("width:100%")
-            upload.props("data-mark=head-upload")
+            self.box.props(f"flat bordered dense accept='{','.join(_ALL)}'").style("width:100%")
+            self.box.props("data-mark=head-upload")
             self._builtin = ui.button(
                 "Built-in head", icon="face", on_click=self.page.safely(self._take_builtin)
             )
@@ -95,6 +97,7 @@ class ProjectPanel(Panel):
     async def _upload(self, event: UploadEventArguments) -> None:
         folder, data = self.shop.document.keeper.folder, await event.file.read()
         path = keep_upload(folder, event.file.name, data, endings=_ALL)
+        self.page.turn_to(self)
         if path.suffix.lower() == ".json":
             await self._take_landmarks(path)
         else:
@@ -126,7 +129,7 @@ class ProjectPanel(Panel):
             before.project, head=path, landmarks=landmarks, unit=None, axes=None, parts={}
         )
         fresh = work_of(project)
-        work = Work(project, before.muscle_map, before.vectors, fresh.landmarks, {})
+        work = replace(before, project=project, landmarks=fresh.landmarks, pose={})
         try:
             if path is not None:
                 mesh, _ = _formats.read_head(path)
