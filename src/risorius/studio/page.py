@@ -11,8 +11,10 @@ from nicegui import background_tasks, ui
 from nicegui.events import GenericEventArguments, KeyEventArguments, ValueChangeEventArguments
 
 from risorius.errors import FormatError, RisoriusError
+from risorius.io.json_fields import Fields
 from risorius.studio.bakery import Bakery
 from risorius.studio.looks import ACCENT, CSS
+from risorius.studio.panel import Panel
 from risorius.studio.panels.catalogue import PANELS
 from risorius.studio.scene import GROUPS
 from risorius.studio.shortcuts import show_shortcuts
@@ -55,11 +57,13 @@ class Page:
                 self.busy = ui.label("building the face …").classes("st-busy")
         for name in _EVENTS:
             self.view.on(name, self._event_handler(name))
+        self.view.on("strange", self.safely(self._strange))
         ui.keyboard(on_key=self.on_key, ignore=["input", "select", "textarea"])
         shop.listeners.add(self.hear)
         self.client.on_delete(self._leave)
         self.say(self.active.hint)
         self.show()
+        self._set_drops()
         for what in ("document", "face", "pose", "show"):
             self.hear(what)
         self.active.enter()
@@ -154,7 +158,30 @@ class Page:
         self.view.set(tool="look", layout=self.bar.layout)
         self.view.overlay()
         self.say(panel.hint)
+        self._set_drops()
         panel.enter()
+
+    def turn_to(self, panel: Panel) -> None:
+        """Bring a panel to the front."""
+        self.tabs.set_value(panel.name)
+
+    def _set_drops(self) -> None:
+        """Tell the viewport where dropped files go: what several take, to the one in front."""
+        places: dict[str, str] = {}
+        for panel in (*self.panels, self.active):
+            if panel.box is not None:
+                places |= dict.fromkeys(panel.drops, str(panel.box.props["url"]))
+        self.view.set(drops=places)
+
+    def _strange(self, event: GenericEventArguments) -> None:
+        fields = Fields(event.args, "page")
+        name = fields.text("name")[:60]
+        if fields.integer("big"):
+            raise FormatError(f"{name}: is larger than 256 MB; open it by the command line")
+        raise FormatError(
+            f"{name}: the studio takes heads (.obj .ply .stl .glb .gltf), landmarks (.json) and "
+            "takes (.fap .csv .json)"
+        )
 
     def _event_handler(self, name: str) -> Callable[..., Awaitable[None]]:
         def handle(event: GenericEventArguments) -> None:

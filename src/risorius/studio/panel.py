@@ -28,6 +28,9 @@ class Panel:
     name = ""
     icon = ""
     hint = ""
+    drops: tuple[str, ...] = ()
+    """Endings of files that `box` takes wherever they are dropped."""
+    box: ui.upload | None = None
 
     def __init__(self, page: Page) -> None:
         self.page = page

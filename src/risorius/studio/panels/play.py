@@ -45,6 +45,8 @@ class PlayPanel(Panel):
     icon = "play_circle"
     hint = "Drop a <b>.fap</b>, Live Link <b>.csv</b> or <b>.json</b>, or play an emotion."
 
+    drops = stream_endings()
+
     def build(self) -> None:
         """Make the elements."""
         self.timed: Timed | None = None
@@ -53,12 +55,12 @@ class PlayPanel(Panel):
         self._sent: tuple[Connection, int] | None = None
         heading("Play", "Motion of any standard moves the face; drag along the timeline.")
         with group("Motion"):
-            self._upload_box = ui.upload(
+            self.box = ui.upload(
                 label="drop a take here, or click +", auto_upload=True, max_file_size=64 << 20,
                 on_upload=self.page.safely(self._upload),
             )  # fmt: skip
-            self._upload_box.props("flat bordered dense accept='.fap,.csv,.json'")
-            self._upload_box.style("width:100%").props("data-mark=take-upload")
+            self.box.props(f"flat bordered dense accept='{','.join(self.drops)}'")
+            self.box.style("width:100%").props("data-mark=take-upload")
             self._files = ui.select([], label="in the project's folder").props("dense")
             self._files.style("width:100%").props("data-mark=take-file")
             self._files.on_value_change(self.page.safely(self._choose))
@@ -123,7 +125,9 @@ class PlayPanel(Panel):
         folder, data = self.shop.document.keeper.folder, await event.file.read()
         known = set(folder.iterdir())
         path = keep_upload(folder, event.file.name, data, endings=stream_endings())
-        self._upload_box.reset()
+        if self.box is not None:
+            self.box.reset()
+        self.page.turn_to(self)
         try:
             await self._open(path)
         except RisoriusError:

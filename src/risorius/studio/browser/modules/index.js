@@ -1,4 +1,5 @@
 // One viewport: meshes, views, pointer, overlay and the stream that feeds them.
+import { Drops } from "./drops.js";
 import { MeshBook } from "./meshes.js";
 import { Overlay } from "./overlay.js";
 import { Player } from "./player.js";
@@ -20,6 +21,7 @@ export class Viewport {
       hidden: [],
       selected: "",
       painted: false,
+      drops: {},
     };
     this.stats = { drawn: 0, alone: 0, received: 0, bytes: 0, serial: 0, sceneCount: 0 };
     this.touch = () => { this.dirty = true; };
@@ -29,6 +31,7 @@ export class Viewport {
     this.pointer = new Pointer(this);
     this.player = new Player(this);
     this.stream = new Stream(address, this);
+    this.drops = new Drops(this);
     this.closed = false;
     this.observer = new ResizeObserver(this.touch);
     this.observer.observe(root);
@@ -86,6 +89,7 @@ export class Viewport {
     this.closed = true;
     this.observer.disconnect();
     this.stream.close();
+    this.drops.close();
     this.views.close();
   }
 }
