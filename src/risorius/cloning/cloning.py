@@ -14,6 +14,7 @@ from risorius.cloning.correspondence import Correspondence, correspond
 from risorius.cloning.landmark_pairs import pair_landmarks
 from risorius.cloning.lid_contact import EyeClearance, LidContact
 from risorius.cloning.lip_contact import LipContact
+from risorius.cloning.lip_seal import LipSeal
 from risorius.cloning.parameters import CloneParameters
 from risorius.cloning.parts import PartCarrier, PartMotion, carriers
 from risorius.cloning.subject import Subject
@@ -150,9 +151,15 @@ class Cloning:
             return
         if self.source.lips is None or self.target.lips is None:
             return
-        linear = self.skin.pairs.similarity.linear
+        similarity = self.skin.pairs.similarity
         contact = LipContact(self.source, self.target)
-        made += contact.correct(ours @ linear.T, made)
+        made += contact.correct(ours @ similarity.linear.T, made)
+        turn, scale = similarity.rotation, float(similarity.scale)
+        seal = LipSeal(self.source, self.target, turn=turn, scale=scale)
+        for moved, clone in zip(ours, made):
+            step = seal.correct(moved, clone)
+            if step is not None:
+                clone += step
 
     def _restore_lids(self, ours: FloatArray, made: FloatArray) -> None:
         if not self.parameters.lid_contact:
@@ -161,7 +168,8 @@ class Cloning:
         source = replace(self.source, lids={side: pair.source for side, pair in pairs.items()})
         target = replace(self.target, lids={side: pair.target for side, pair in pairs.items()})
         for side in pairs:
-            contact = LidContact(source, target, side)
+            turn = self.skin.pairs.similarity.rotation
+            contact = LidContact(source, target, side, turn=turn)
             clear = None
             if EyeClearance.possible(target, side):
                 clear = EyeClearance(target, side)

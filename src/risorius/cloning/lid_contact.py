@@ -8,37 +8,57 @@ from risorius._check import FloatArray, IntArray
 from risorius.anatomy.radial_surface import RadialSurface
 from risorius.anatomy.smooth_step import smooth_step
 from risorius.cloning.local_field import LocalField
-from risorius.cloning.polyline import interpolated, line_trust, shares
-from risorius.cloning.subject import Subject
+from risorius.cloning.polyline import interpolated, line_trust
+from risorius.cloning.subject import Subject, turned_head
 from risorius.head.part_geometry import fit_sphere
-from risorius.mesh.lids import LidMargins
+from risorius.rig.quality.lid_gap import LID_PLACES, LidSight
 
 __all__ = ["EyeClearance", "LidContact"]
 
-_PLACES = np.linspace(0.06, 0.94, 15)
 _REACH, _LENGTH, _BEND = 1.3, 0.5, 0.25
 # The correction sets in where less than the first share of the gap is left, fully below the
 # second: lids that close, not lids that squint.
 _ONSET, _FULL = 0.5, 0.2
-_LEAST = 5e-3
+# What differs by less than this share of the opening is left alone, twice what the lines of sight
+# resolve; how often lids are looked at again.
+_ALIKE, _ROUNDS = 0.015, 8
+# Openings at one place below this share of the eye's largest are corners or covered by a hood.
+_NARROW = 0.25
 # Distance that lids keep from the eyeball unless they are nearer at rest [mm].
 _CLEARANCE = 0.25
 
 
+# Margins are moved by polynomials of this degree along the eye: no place by itself.
+_DEGREE = 3
+_BASIS = np.polynomial.legendre.legvander(2.0 * LID_PLACES - 1.0, _DEGREE)
+_SMOOTHED = _BASIS @ np.linalg.pinv(_BASIS)
+
+
 class LidContact:
-    """Corrects the gap between the margins of one eye.
+    """Corrects the gap between the lids of one eye.
+
+    What is left of the gap is measured as one sees it from the centre of the eyeball, the same on
+    both heads (`risorius.rig.quality.lid_gap.LidSight`): margins may be rounded, hooded or traced
+    one ring of vertices off. The margins are moved by what is missing, each lid by its share of
+    the source's motion, and looked at again.
 
     Parameters
     ----------
     source, target : Subject
         Both with this eye's lids.
     side : {"l", "r"}
+    turn : (3, 3) float64, optional
+        Rotation of the target against the source: both are looked at from the same side.
     """
 
-    def __init__(self, source: Subject, target: Subject, side: str) -> None:
-        self._source = _Margins(source, source.lids[side])
-        self._target = _Margins(target, target.lids[side])
+    def __init__(
+        self, source: Subject, target: Subject, side: str, *, turn: FloatArray | None = None
+    ) -> None:
+        self._source = _Lids(source, side, np.eye(3))
+        self._target = _Lids(target, side, np.eye(3) if turn is None else turn)
         self._trust = line_trust(self._source.lines, self._target.lines)
+        if not (self._source.is_seen and self._target.is_seen):
+            self._trust = 0.0
         margins = target.lids[side]
         near = np.asarray(margins.distance < _REACH * margins.height)
         self._field = LocalField(
@@ -59,48 +79,104 @@ class LidContact:
         theirs : (n, 3) float64
             Displacement of the target's skin so far [mm].
         """
-        wanted, travel = self._source.gap_shares(ours)
-        made, _ = self._target.gap_shares(theirs)
-        onset = self._trust * smooth_step((_ONSET - wanted) / (_ONSET - _FULL))
-        missing = onset * (wanted - made) * self._target.opening
-        if np.abs(missing).max() < _LEAST:
+        if self._trust == 0.0 or self._source.least_left(ours) >= _ONSET:
             return None
-        goal = np.zeros((len(theirs), 3))
-        for number, line in enumerate(self._target.lines):
-            part = missing * (travel if number == 0 else travel - 1.0)
-            place = self._target.places[number]
-            step = np.interp(place, _PLACES, part)
-            step *= np.clip(np.minimum(place, 1.0 - place) / _PLACES[0], 0.0, 1.0)
-            direction = interpolated(self._target.direction, _PLACES, place)
-            goal[line] = step[:, None] * direction
+        wanted, travel = self._source.gap(ours), self._source.upper_share(ours)
+        onset = self._trust * smooth_step((_ONSET - float(wanted.max())) / (_ONSET - _FULL))
+        if not onset > 0.0:
+            return None
         result = np.zeros_like(theirs)
-        result[self._field.vertices] = self._field.solve(goal)
+        for _ in range(_ROUNDS):
+            missing = onset * (wanted - self._target.gap(theirs + result, wanted))
+            if np.abs(missing).max() < _ALIKE:
+                break
+            missing = _SMOOTHED @ missing
+            goal = np.zeros((len(theirs), 3))
+            for line, step in self._target.steps(missing, travel):
+                goal[line] = step
+            result[self._field.vertices] += self._field.solve(goal)
+        return result if result.any() else None
+
+
+class _Lids:
+    """The lids of one eye: how much of its gap a pose leaves, and how to change that.
+
+    Gaps are shares of the eye's largest opening at rest.
+    """
+
+    def __init__(self, subject: Subject, side: str, turn: FloatArray) -> None:
+        margins = subject.lids[side]
+        self.lines: tuple[IntArray, IntArray] = (margins.slit.upper, margins.slit.lower)
+        self._turn = turn
+        head = turned_head(subject.head, turn.T)
+        rest = head.skin.mesh.positions
+        still = np.zeros_like(rest)
+        self._sight = LidSight(head, margins, side)
+        self._opening = max(self._sight.opening, 1e-9)
+        self._rest = self._sight.gaps(still) / self._opening
+        self._rest_apart = self._sight.apart(self.lines, still) / self._opening
+        self._places = [self._sight.places(rest[line]) for line in self.lines]
+        upper, lower = (self._at_places(rest[line], k) for k, line in enumerate(self.lines))
+        apart = upper - lower
+        self._direction = apart / np.maximum(np.linalg.norm(apart, axis=1), 1e-9)[:, None]
+        self._arm = np.linalg.norm(0.5 * (upper + lower) - self._sight.centre, axis=1)
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether one sees anything of the eye at rest."""
+        return self._sight.opening > 0.0
+
+    def gap(self, moved: FloatArray, wanted: FloatArray | None = None) -> FloatArray:
+        """Return what is left (9,) of the gap at each place, < 0 where the margins pass.
+
+        Parameters
+        ----------
+        moved : (n, 3) float64
+            Displacement of the skin [mm].
+        wanted : (9,) float64, optional
+            Where a gap is wanted and none is seen, margins that a hood covers pass each other
+            from where they stand apart as far as at rest beyond what is seen.
+        """
+        moved = moved @ self._turn
+        seen = self._sight.gaps(moved) / self._opening
+        apart = self._sight.apart(self.lines, moved) / self._opening
+        if wanted is not None:
+            covered = np.maximum(self._rest_apart - self._rest, 0.0)
+            apart = np.where((wanted > 0.0) & (self._rest > _NARROW), apart - covered, apart)
+        return np.where(seen > 0.0, seen, np.minimum(apart, 0.0))
+
+    def least_left(self, moved: FloatArray) -> float:
+        """Return what is left of the gap where least is, by the margins alone: cheap."""
+        change = (
+            self._sight.apart(self.lines, moved @ self._turn) / self._opening - self._rest_apart
+        )
+        return 1.0 + float((change / np.maximum(self._rest, _NARROW)).min())
+
+    def upper_share(self, moved: FloatArray) -> FloatArray:
+        """Return the upper lid's share (9,) of the motion that closes the eye."""
+        turned = moved @ self._turn
+        upper, lower = (
+            np.abs(np.einsum("kj,kj->k", self._at_places(turned[line], k), self._direction))
+            for k, line in enumerate(self.lines)
+        )
+        return upper / np.maximum(upper + lower, 1e-12)
+
+    def steps(self, missing: FloatArray, share: FloatArray) -> list[tuple[IntArray, FloatArray]]:
+        """Return how each margin (k,) must move (k, 3) to open the gap by `missing` (9,) [mm]."""
+        result: list[tuple[IntArray, FloatArray]] = []
+        for number, line in enumerate(self.lines):
+            part = missing * self._opening * self._arm * (share if number == 0 else share - 1.0)
+            place = self._places[number]
+            step = np.interp(place, LID_PLACES, part)
+            step *= np.clip(np.minimum(place, 1.0 - place) / LID_PLACES[0], 0.0, 1.0)
+            direction = interpolated(self._direction, LID_PLACES, place)
+            result.append((line, step[:, None] * direction @ self._turn.T))
         return result
 
-
-class _Margins:
-    """The two margins of an eye at rest, sampled at equal shares."""
-
-    def __init__(self, subject: Subject, margins: LidMargins) -> None:
-        self.lines: tuple[IntArray, IntArray] = (margins.slit.upper, margins.slit.lower)
-        rest = subject.mesh.positions
-        self.places = [shares(rest[line]) for line in self.lines]
-        upper, lower = (
-            interpolated(rest[line], place, _PLACES) for line, place in zip(self.lines, self.places)
-        )
-        apart = upper - lower
-        length = np.linalg.norm(apart, axis=1)
-        self.direction = apart / np.maximum(length, 1e-9)[:, None]
-        self.opening = np.maximum(length, 1e-9)
-
-    def gap_shares(self, deltas: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return what is left of the gap at each place (k,), and the upper lid's share of it."""
-        upper, lower = (
-            np.einsum("kj,kj->k", interpolated(deltas[line], place, _PLACES), self.direction)
-            for line, place in zip(self.lines, self.places)
-        )
-        travel = np.abs(upper) / np.maximum(np.abs(upper) + np.abs(lower), 1e-12)
-        return 1.0 + (upper - lower) / self.opening, travel
+    def _at_places(self, values: FloatArray, number: int) -> FloatArray:
+        place = self._places[number]
+        order = np.argsort(place, kind="stable")
+        return interpolated(values[order], place[order], LID_PLACES)
 
 
 class EyeClearance:

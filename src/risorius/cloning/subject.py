@@ -20,7 +20,7 @@ from risorius.mesh.lids import LidMargins
 from risorius.mesh.lips import LipSides
 from risorius.mesh.slit import edge_graph
 
-__all__ = ["Subject"]
+__all__ = ["Subject", "turned_head"]
 
 # Vertices nearer to a lip's contact line than this share of the mouth's width have a side.
 _LIP_REACH = 0.35
@@ -66,7 +66,7 @@ class Subject:
             Rotation of this head against the one it is compared with. The contact line of the
             lips is what turns inwards seen from the front; both heads must be seen alike.
         """
-        seen = head if turn is None else _turned(head, turn.T)
+        seen = head if turn is None else turned_head(head, turn.T)
         notes: list[str] = []
         lips = None
         try:
@@ -168,10 +168,13 @@ class Subject:
         ]
 
 
-def _turned(head: Head, rotation: FloatArray) -> Head:
-    skin = head.skin
-    # Rounded, so that edges that stand upright on one head do so on its turned copy.
-    mesh = TriMesh(np.round(skin.mesh.positions @ rotation.T, 7), skin.mesh.faces)
-    parts = {**head.parts, "skin": replace(skin, mesh=mesh)}
+def turned_head(head: Head, rotation: FloatArray) -> Head:
+    """Return a head whose parts and landmarks are turned by `rotation` (3, 3)."""
+
+    def turned(mesh: TriMesh) -> TriMesh:
+        # Rounded, so that edges that stand upright on one head do so on its turned copy.
+        return TriMesh(np.round(mesh.positions @ rotation.T, 7), mesh.faces)
+
+    parts = {kind: replace(part, mesh=turned(part.mesh)) for kind, part in head.parts.items()}
     marks = head.landmarks.at(head.positions @ rotation.T)
     return replace(head, parts=parts, landmarks=marks)
