@@ -12,8 +12,8 @@ from risorius.cli.talk import Talk
 from risorius.controls.presets import EMOTIONS, PresetBook
 from risorius.head.head import Head
 from risorius.render.heads import Portrait
-from risorius.render.picture import render
 from risorius.render.png import write_png
+from risorius.render.series import Series
 from risorius.render.sheet import contact_sheet
 from risorius.render.views import VIEWS
 from risorius.vectormuscle.face import VectorFace
@@ -21,7 +21,8 @@ from risorius.vectormuscle.vector_set import VectorSet
 
 __all__ = ["FacePage", "write_emotions"]
 
-_CELL = (300, 300)
+# Nine of these fit on a screen, and a generation is there before one has blinked.
+_CELL = (256, 256)
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,9 +46,9 @@ class FacePage:
         one_of("view", self.view, tuple(VIEWS))
 
     @cached_property
-    def portrait(self) -> Portrait:
+    def series(self) -> Series:
         """The head that sits for the pictures."""
-        return Portrait.of(self.head)
+        return Series.of(Portrait.of(self.head), self.view, size=self.size)
 
     def write(
         self, path: Path, posed: Sequence[FloatArray], labels: Sequence[str], *, title: str
@@ -62,12 +63,9 @@ class FacePage:
         labels : sequence of str
         title : str
         """
-        camera = self.portrait.camera(self.view)
-        images = [
-            render(self.portrait.surfaces(each), camera, size=self.size, supersample=2)
-            for each in posed
-        ]
-        write_png(path, contact_sheet(images, labels, columns=3, title=title))
+        images = self.series.pictures(posed)
+        sheet = contact_sheet(images, labels, columns=3, title=title)
+        write_png(path, sheet, effort=1)
 
 
 def write_emotions(

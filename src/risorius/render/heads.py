@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from risorius._check import FloatArray, IntArray, as_points
+from risorius._check import BoolArray, FloatArray, IntArray, as_points
 from risorius.errors import ShapeError
 from risorius.head.head import Head
 from risorius.head.part_geometry import fit_sphere
@@ -28,6 +28,11 @@ __all__ = ["Portrait"]
 
 # An eye that misses the best sphere by more than this share of its radius is not painted.
 _ROUND = 0.12
+# Triangles that turn away from the camera by more than 120 degrees, or lie beside the picture by
+# more than this share of it, come into view in no pose.
+_AWAY = -0.5
+_BESIDE = 0.15
+_HAIR_ON_SKIN = 0.55
 # Parts whose own look says more than the names of materials on them.
 _BY_PART = ("teeth", "tongue", "gums", "lashes")
 
@@ -58,6 +63,7 @@ class Portrait:
     _rig: Rig
     _pieces: tuple[_Piece, ...]
     _joined: Weld
+    _triangles: IntArray
 
     @staticmethod
     def of(subject: Rig | Head) -> Portrait:
@@ -69,7 +75,7 @@ class Portrait:
             marks = resolve(rig.landmarks, rig.mesh).at(positions)
         # Seams of texture coordinates would show as creases.
         joined = weld(positions, tolerance=0.0)
-        return Portrait(positions, marks, rig, _pieces(rig, positions), joined)
+        return Portrait(positions, marks, rig, _pieces(rig, positions), joined, rig.mesh.triangles)
 
     def posed(self, weights: Mapping[str, float]) -> FloatArray:
         """Return the positions (n, 3) with weighted targets of the rig [mm].
@@ -80,6 +86,32 @@ class Portrait:
             If the rig has no target of such a name.
         """
         return self._rig.frame.to_canonical(self._rig.posed(weights))
+
+    def seen_from(self, camera: Camera, *, aspect: float = 1.0) -> Portrait:
+        """Return the portrait without the triangles that `camera` sees in no pose of the face.
+
+        Parameters
+        ----------
+        camera : Camera
+        aspect : float
+            Width over height of the picture.
+        """
+        normals = self._normals(self.positions)
+        towards = camera.eye - self.positions
+        towards /= np.maximum(np.linalg.norm(towards, axis=1, keepdims=True), 1e-12)
+        height = 1000
+        place = camera.project(self.positions, (round(aspect * height), height))[:, :2]
+        place = np.abs(place / [aspect * height, height] - 0.5)
+        # What lies behind the camera has no place; it is kept.
+        inside: BoolArray = np.logical_not((place > 0.5 + _BESIDE).any(axis=1))
+        seen: BoolArray = inside & ((normals * towards).sum(axis=1) > _AWAY)
+        # Brows and lashes let their backs shine through.
+        pieces = [
+            _kept(piece, seen if piece.look["opacity"] >= 1.0 else inside) for piece in self._pieces
+        ]
+        triangles = self._triangles[inside[self._triangles].any(axis=1)]
+        shown = tuple(piece for piece in pieces if len(piece.faces))
+        return replace(self, _pieces=shown, _triangles=triangles)
 
     def surfaces(self, positions: npt.ArrayLike | None = None) -> list[Surface]:
         """Return what is drawn, at rest or with the vertices at `positions` (n, 3) [mm]."""
@@ -143,7 +175,7 @@ class Portrait:
 
     def _normals(self, placed: FloatArray) -> FloatArray:
         single = np.zeros_like(placed)
-        area_normals(placed, self._rig.mesh.triangles, single)
+        area_normals(placed, self._triangles, single)
         joined = self._joined
         if joined.is_identity:
             return single
@@ -185,6 +217,17 @@ def _pieces(rig: Rig, positions: FloatArray) -> tuple[_Piece, ...]:
     return tuple(pieces)
 
 
+def _kept(piece: _Piece, seen: BoolArray) -> _Piece:
+    """Return the triangles of a piece that have a vertex among those `seen` (n,)."""
+    rows, local = np.unique(
+        piece.faces[seen[piece.vertices][piece.faces].any(axis=1)], return_inverse=True
+    )
+    look = dict(piece.look)
+    if np.ndim(look.get("colour", ())) and len(look["colour"]) == len(piece.vertices):
+        look["colour"] = np.asarray(look["colour"])[rows]
+    return _Piece(piece.vertices[rows], local.reshape(-1, 3).astype(np.int32), look)
+
+
 def _is_eye(part: str) -> bool:
     return part.startswith("eye_")
 
@@ -200,8 +243,18 @@ def _look(part: str, material: str) -> dict[str, Any]:
     if part.startswith(_BY_PART):
         return look_of_material(part)
     if colour_of_material(material) != colour_of_material(""):
-        return look_of_material(material)
+        look = look_of_material(material)
+        # Hair that is painted on the skin has nothing behind it that could shine through.
+        return _painted(look) if part == "skin" and look["opacity"] < 1.0 else look
     return look_of_material("brow" if part == "attached" else part)
+
+
+def _painted(hair: dict[str, Any]) -> dict[str, Any]:
+    """Return the look of skin with hair on it."""
+    skin = look_of_material("skin")
+    share = _HAIR_ON_SKIN
+    both = np.stack([skin["colour"], hair["colour"]])
+    return {**skin, "colour": tuple((np.array([1.0 - share, share]) @ both).tolist())}
 
 
 def _paint(positions: FloatArray, eye: npt.NDArray[np.intp], vertices: IntArray) -> dict[str, Any]:

@@ -20,14 +20,16 @@ from risorius.render.overlay import Overlay, draw_overlay
 from risorius.render.scene import Float32Array, Scene, gather
 from risorius.render.surface import Surface
 
-__all__ = ["BACKDROP", "render"]
+__all__ = ["BACKDROP", "OCCLUSION_SHARE", "render"]
 
 BACKDROP: FloatArray = np.array([linear_rgb("#4b525c"), linear_rgb("#23262b")])
 """Default background, top and bottom (2, 3)."""
 BACKDROP.flags.writeable = False
 
 _TRANSPARENT_LAYERS = 6
-_OCCLUSION_SHARE = 0.05
+OCCLUSION_SHARE = 0.05
+"""Default radius of occlusion, share of the diagonal of what is drawn."""
+
 _LIFT_SHARE = 0.004
 _SPIRAL = spiral()
 _SRGB = 255.0 * encode_srgb(np.linspace(0.0, 1.0, 4097))
@@ -83,7 +85,7 @@ def render(
     inverse_depth, face = nearest(scene, 0, scene.opaque_face_count)
     layers, layer_rows = transparent_layers(scene, inverse_depth, _TRANSPARENT_LAYERS)
     radius = lights.occlusion_radius
-    radius = _OCCLUSION_SHARE * scene.diagonal if radius is None else radius
+    radius = OCCLUSION_SHARE * scene.diagonal if radius is None else radius
     occlusion = lights.occlusion if radius > 0.0 else 0.0
     depth, open_sky = np.zeros((1, 1), np.float32), np.ones((1, 1), np.float32)
     if occlusion > 0.0:
@@ -103,8 +105,8 @@ def render(
         *(backdrop, _SRGB, picture),
     )
     scratch = np.zeros((height, width), np.float32)
+    lift = _LIFT_SHARE * scene.diagonal if overlays else 0.0
     for overlay in overlays:
-        lift = _LIFT_SHARE * scene.diagonal
         draw_overlay(overlay, camera, picture, inverse_depth, lift=lift, scratch=scratch)
     return np.rint(picture).astype(np.uint8)
 

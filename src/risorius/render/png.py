@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image, UnidentifiedImageError
 
+from risorius._check import as_number
 from risorius.errors import FormatError, ShapeError
 from risorius.io.atomic import atomic_write
 
@@ -32,8 +33,15 @@ def as_image(name: str, value: npt.ArrayLike) -> Uint8Array:
     return image
 
 
-def write_png(path: str | Path, image: npt.ArrayLike) -> None:
+def write_png(path: str | Path, image: npt.ArrayLike, *, effort: int = 6) -> None:
     """Write `image` (h, w, 3) uint8 to `path`; the file appears complete or not at all.
+
+    Parameters
+    ----------
+    path : str or Path
+    image : (h, w, 3) array_like
+    effort : int
+        1 writes three times as fast as 6, for a fifth more bytes; 9 is the most.
 
     Raises
     ------
@@ -41,8 +49,9 @@ def write_png(path: str | Path, image: npt.ArrayLike) -> None:
         If the folder is missing or the system refuses to write.
     """
     picture = Image.fromarray(np.ascontiguousarray(as_image("image", image)))
+    effort = int(as_number("effort", effort, low=1, high=9))
     with atomic_write(path) as temporary:
-        picture.save(temporary, format="PNG", compress_level=6)
+        picture.save(temporary, format="PNG", compress_level=effort)
 
 
 def read_png(path: str | Path) -> Uint8Array:

@@ -13,7 +13,7 @@ from risorius.render.camera import Camera
 from risorius.render.kernels.raster import area_normals, prepare
 from risorius.render.surface import Surface
 
-__all__ = ["Scene", "gather"]
+__all__ = ["Scene", "diagonal", "gather"]
 
 Float32Array = npt.NDArray[np.float32]
 
@@ -28,8 +28,8 @@ class Scene:
         Samples of the picture.
     near : float
         Depth before which nothing is drawn [mm].
-    diagonal : float
-        Of the box around all positions [mm].
+    surfaces : tuple of Surface
+        In the caller's order.
     order : (s,) int32
         Index of the caller's surface for each gathered one.
     first_face : (s + 1,) int32
@@ -57,7 +57,7 @@ class Scene:
 
     size: tuple[int, int]
     near: float
-    diagonal: float
+    surfaces: tuple[Surface, ...]
     order: IntArray
     first_face: IntArray
     opaque_face_count: int
@@ -76,6 +76,11 @@ class Scene:
     def face_count(self) -> int:
         """Number of triangles of all surfaces."""
         return len(self.volume)
+
+    @property
+    def diagonal(self) -> float:
+        """Of the box around everything drawn [mm]."""
+        return diagonal(self.surfaces)
 
 
 # Triangles whose coordinates overflow are left out by `prepare`.
@@ -102,7 +107,7 @@ def gather(surfaces: Sequence[Surface], camera: Camera, size: tuple[int, int]) -
     return Scene(
         size=size,
         near=camera.near,
-        diagonal=_diagonal(positions, faces),
+        surfaces=tuple(surfaces),
         order=np.array(order, np.int32),
         first_face=first_face,
         opaque_face_count=sum(len(s.faces) for s in drawn if s.opacity >= 1.0),
@@ -187,10 +192,14 @@ def _stacked(rows: Sequence[IntArray], lengths: Sequence[int]) -> IntArray:
     return np.concatenate([np.zeros((0, 3), np.int32), *moved]).astype(np.int32)
 
 
-def _diagonal(positions: FloatArray, faces: IntArray) -> float:
-    if not len(faces):
-        return 0.0
-    used = np.zeros(len(positions), bool)
-    used[faces] = True
-    low, high = positions[used].min(axis=0), positions[used].max(axis=0)
-    return float(np.linalg.norm(high - low))
+def diagonal(surfaces: Sequence[Surface]) -> float:
+    """Return the diagonal of the box around the faces of `surfaces` [mm], 0 if there are none."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for surface in surfaces:
+        used = np.zeros(len(surface.positions), bool)
+        used[surface.faces] = True
+        if used.any():
+            places = surface.positions[used]
+            low = np.minimum(low, places.min(axis=0))
+            high = np.maximum(high, places.max(axis=0))
+    return float(np.linalg.norm(high - low)) if (low <= high).all() else 0.0

@@ -22,11 +22,14 @@ _PIT = 1.5
 
 
 def spiral(*, taps=20, turns=7):
-    """Return (16, taps, 2): a spiral of taps within radius 1, in 16 turned positions."""
+    """Return (16, taps, 3): a spiral of taps within radius 1, in 16 turned positions.
+
+    The third number is the weight of a tap, which falls with its distance from the middle.
+    """
     share = (np.arange(taps) + 0.5) / taps
     angle = 2.0 * np.pi * (turns * share[None, :] + np.arange(16)[:, None] / 16.0)
     x, y = np.cos(angle) * share, np.sin(angle) * share
-    return np.stack([x, y], axis=2)
+    return np.stack([x, y, 1.0 - (x * x + y * y)], axis=2)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -93,6 +96,9 @@ def occlude(row_from, row_to, depth, normal, focal, radius, spiral, open_sky):
     """Write `open_sky` (h, w): 1 where nothing within `radius` hides the sky, towards 0."""
     height, width = depth.shape
     half_w, half_h = 0.5 * width - 0.5, 0.5 * height - 0.5
+    deepest2 = (_DEEP * radius) ** 2
+    # Divisions cost more than all else here.
+    per_focal, per_radius, per_deepest2 = 1.0 / focal, 1.0 / radius, 1.0 / deepest2
     for y in range(row_from, row_to):
         for x in range(width):
             z = depth[y, x]
@@ -101,8 +107,8 @@ def occlude(row_from, row_to, depth, normal, focal, radius, spiral, open_sky):
             if not reach >= 1.0:
                 continue
             reach = min(reach, _WIDEST)
-            deepest2 = (_DEEP * radius) ** 2
-            px, py = (x - half_w) * z / focal, (y - half_h) * z / focal
+            z_per_focal = z * per_focal
+            px, py = (x - half_w) * z_per_focal, (y - half_h) * z_per_focal
             nx, ny, nz = normal[y, x, 0], normal[y, x, 1], normal[y, x, 2]
             taps = spiral[((x & 3) * 4 + (y & 3)) * 7 & 15]
             hidden = pit = 0.0
@@ -114,17 +120,17 @@ def occlude(row_from, row_to, depth, normal, focal, radius, spiral, open_sky):
                 far = depth[qy, qx]
                 if far == np.inf:
                     continue
-                dx = (qx - half_w) * far / focal - px
-                dy = (qy - half_h) * far / focal - py
+                far_per_focal = far * per_focal
+                dx = (qx - half_w) * far_per_focal - px
+                dy = (qy - half_h) * far_per_focal - py
                 dz = far - z
                 length2 = dx * dx + dy * dy + dz * dz
                 if dz * dz >= deepest2 or length2 == 0.0:
                     continue
                 cosine = (dx * nx + dy * ny + dz * nz) / math.sqrt(length2)
-                aside2 = taps[tap, 0] ** 2 + taps[tap, 1] ** 2
-                fade = (1.0 - aside2) * (1.0 - dz * dz / deepest2)
+                fade = taps[tap, 2] * (1.0 - dz * dz * per_deepest2)
                 hidden += max(0.0, cosine - 0.10) * fade
-                pit += min(max(-dz / radius, -1.0), 1.0) * fade
+                pit += min(max(-dz * per_radius, -1.0), 1.0) * fade
             open_sky[y, x] = max(0.0, 1.0 - (_GAIN * hidden + _PIT * max(pit, 0.0)) / taps.shape[0])
 
 

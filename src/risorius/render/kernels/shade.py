@@ -13,6 +13,10 @@ __all__ = ["shade"]
 
 _BACK = 0.35
 _WRAP = 0.30
+# One sample does for pixels whose depths differ by less than this share of what counts as even,
+# and whose faces have normals with at least this cosine between them.
+_FLAT = 0.5
+_STRAIGHT = 0.9
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -134,22 +138,46 @@ def _sky_at(sy, sx, step, inverse_depth, depth, open_sky, radius):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _is_even(y, x, step, face, face_surface, materials, inverse_depth, gap):
-    """Whether all samples of the pixel see one plain surface at about one depth."""
+def _stride(y, x, step, face, face_surface, materials, inverse_depth, gap, normals, normal_rows):
+    """Return how many samples of the pixel may be passed over after one that is shaded.
+
+    None, unless all see one plain surface at about one depth, within `gap`: then the first and
+    the last tell the rest; where they hardly differ, the first alone.
+    """
     first = face[y * step, x * step]
     if first < 0:
-        return False
+        return 1
     surface = face_surface[first]
     if materials[surface, 3] == 0.0:
-        return False
+        return 1
+    middle = normals[normal_rows[first, 0]]
+    bent = False
     low = high = inverse_depth[y * step, x * step]
     for sy in range(y * step, y * step + step):
         for sx in range(x * step, x * step + step):
             f = face[sy, sx]
-            if f < 0 or face_surface[f] != surface:
-                return False
             low, high = min(low, inverse_depth[sy, sx]), max(high, inverse_depth[sy, sx])
-    return high - low <= gap * low * high
+            if f == first:
+                continue
+            if f < 0 or face_surface[f] != surface:
+                return 1
+            other = normals[normal_rows[f, 0]]
+            along = middle[0] * other[0] + middle[1] * other[1] + middle[2] * other[2]
+            bent = bent or along < _STRAIGHT
+    apart = high - low
+    if apart > gap * low * high:
+        return 1
+    return step * step - (1 if bent or apart > _FLAT * gap * low * high else 0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _is_veiled(y, x, step, layer):
+    """Whether a sample of the pixel sees something transparent."""
+    for sy in range(y * step, y * step + step):
+        for sx in range(x * step, x * step + step):
+            if layer[sy, sx] >= 0:
+                return True
+    return False
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -188,8 +216,8 @@ def shade(
     `face` (h step, w step) is what each sample sees of the opaque surfaces, `layers` what it
     sees of transparent ones, nearest first, in the rows from `layer_from` to `layer_to`.
     `materials` rows are specular, gloss, opacity, whether plain, first row and size of the
-    ramp. Where all samples of a pixel see one plain surface, only its first and last are
-    shaded.
+    ramp. Where all samples of a pixel see one plain surface and nothing transparent before it,
+    only some are shaded.
     """
     rows, columns = face.shape
     half_w, half_h = 0.5 * columns - 0.5, 0.5 * rows - 0.5
@@ -198,10 +226,12 @@ def shade(
         for x in range(picture.shape[1]):
             red = green = blue = 0.0
             skip = 1
-            if step > 1 and not has_layers:
+            if step > 1 and not (has_layers and _is_veiled(y, x, step, layers[0])):
                 gap = 0.1 * radius
-                even = _is_even(y, x, step, face, face_surface, materials, inverse_depth, gap)
-                skip = step * step - 1 if even else 1
+                skip = _stride(
+                    y, x, step, face, face_surface, materials, inverse_depth, gap,
+                    normals, normal_rows,
+                )  # fmt: skip
             share = 1.0 / ((step * step - 1) // skip + 1)
             for sample in range(0, step * step, skip):
                 sy, sx = y * step + sample // step, x * step + sample % step
