@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from importlib.resources import files
 from pathlib import Path
-from typing import Any
 
 from risorius.cli.outputs import require_json_output
 from risorius.cli.talk import Talk
-from risorius.controls.control import Pose
 from risorius.controls.presets import EMOTIONS, parse_presets
 from risorius.controls.standard import (
     MUSCLES,
@@ -21,9 +18,9 @@ from risorius.controls.standard import (
 )
 from risorius.errors import ParameterError
 from risorius.io.atomic import write_bytes
-from risorius.io.bounded import parse_json, read_json
 from risorius.io.motion import write_stream
 from risorius.playback.emotion_timing import Timing, blended_pose, emotion_stream
+from risorius.project.preset_document import presets_document, with_emotions
 
 __all__ = ["write_blend", "write_preset"]
 
@@ -60,32 +57,14 @@ def write_preset(
         raise ParameterError(
             f"preset: {name!r} is no name of a shape; use letters, digits and _, such as delight"
         )
-    document = _document(base)
+    document = presets_document(base)
     book = parse_presets(document, source=str(base or "presets.json"))
     if name in EMOTIONS or name in book.arkit:
         raise ParameterError(f"preset: {name!r} is the name of a standard shape; choose another")
     muscles = (*SINGLE_MUSCLES, *(full for muscle in MUSCLES for full in sided(muscle)))
     controls = (*controls_of_muscles(muscles), *device_controls())
-    pose = _short(blended_pose(book, intensities, controls))
-    document["emotions"] = {**document.get("emotions", {}), name: pose}
+    document = with_emotions(document, {name: blended_pose(book, intensities, controls)})
+    pose = document["emotions"][name]
     write_bytes(path, (json.dumps(document, indent=1, ensure_ascii=False) + "\n").encode())
     talk.put(output=path, preset=name, pose=pose)
     talk.say(f"wrote {path}: {name} of {len(pose)} controls; risorius rig HEAD --presets {path}")
-
-
-def _document(base: Path | None) -> dict[str, Any]:
-    if base is not None:
-        return read_json(base, schema="risorius/presets")
-    text = files("risorius.controls").joinpath("data/presets.json").read_bytes()
-    return parse_json(text, "presets.json")
-
-
-def _short(pose: Pose) -> dict[str, float]:
-    """Return the pose with equal sides under one name, as people write presets."""
-    result: dict[str, float] = {}
-    for name, value in pose.items():
-        base, side = (name[:-2], name[-2:]) if name.endswith(("_l", "_r")) else (name, "")
-        other = f"{base}{'_r' if side == '_l' else '_l'}"
-        paired = bool(side) and pose.get(other) == value
-        result[base if paired else name] = round(value, 4)
-    return result

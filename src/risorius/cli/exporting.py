@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, cast
 
@@ -11,10 +12,9 @@ import typer
 from risorius._check import FloatArray
 from risorius.cli.sources import Given, read_head, resolve
 from risorius.cli.talk import Talk
-from risorius.controls.presets import PresetBook
 from risorius.head.head import Head
 from risorius.io.atomic import write_bytes
-from risorius.project import BUILTIN, presets_of, vectors_of
+from risorius.project import BUILTIN, Project, presets_of, vectors_of
 from risorius.vectormuscle.export import Export, ExportParameters
 from risorius.vectormuscle.export_points import FeatureSet, find_features
 from risorius.vectormuscle.vector_set import VectorSet
@@ -24,46 +24,48 @@ __all__ = ["Way", "as_feature", "begin_export", "write_vectors"]
 
 @dataclass(frozen=True)
 class Way:
-    """From where to where muscles are carried.
+    """From where muscles are carried, and by which points.
 
     Parameters
     ----------
-    given : Given
-        About the target.
     source : str
         Head that the muscles are right on.
     source_landmarks : Path or None
-    source_points, target_points : mapping of str to (float, float, float)
-        Feature points given by hand, in the frame and unit of their head's file.
+    source_points, target_points : list of str or None
+        Feature points given by hand as ``NAME=X,Y,Z``, in the frame and unit of their head's file.
     """
 
-    given: Given
     source: str = BUILTIN
     source_landmarks: Path | None = None
-    source_points: dict[str, tuple[float, ...]] = field(
-        default_factory=dict[str, tuple[float, ...]]
-    )
-    target_points: dict[str, tuple[float, ...]] = field(
-        default_factory=dict[str, tuple[float, ...]]
-    )
+    source_points: list[str] | None = None
+    target_points: list[str] | None = None
 
 
-def begin_export(name: str, way: Way, talk: Talk) -> tuple[Export, PresetBook]:
-    """Read both heads and return the export before its first group, and the presets.
+def begin_export(project: Project, way: Way, talk: Talk, *, first: Iterable[str] = ()) -> Export:
+    """Read both heads and return the export to the project's head before its first group.
+
+    Parameters
+    ----------
+    project : Project
+    way : Way
+    talk : Talk
+    first : iterable of str
+        Expressions that are judged before all others.
 
     Raises
     ------
     RisoriusError
         If something of it is refused.
     """
-    project = resolve(name, way.given)
+    here = as_feature(way.source_points, "--source-point")
+    there = as_feature(way.target_points, "--target-point")
     vectors, presets = vectors_of(project), presets_of(project)
-    target = read_head(project, talk)
     source = read_head(resolve(way.source, Given(landmarks=way.source_landmarks)), talk)
+    target = read_head(project, talk)
     with talk.stage("feature points"):
         features = (
-            find_features(source, given=_canonical(source, way.source_points)),
-            find_features(target, given=_canonical(target, way.target_points)),
+            find_features(source, given=_canonical(source, here)),
+            find_features(target, given=_canonical(target, there)),
         )
         profile = cast(Literal["improved", "faithful"], project.profile)
         export = Export.begin(
@@ -73,12 +75,13 @@ def begin_export(name: str, way: Way, talk: Talk) -> tuple[Export, PresetBook]:
             parameters=ExportParameters.of_profile(profile),
             features=features,
             presets=presets,
+            first=first,
         )
-    talk.put(head=project.name, source=way.source, features=_described(target, features[1]))
+    talk.put(source=way.source, features=_described(target, features[1]))
     found = [feature for feature, origin in features[1].sources.items() if origin == "found"]
     talk.say(f"  feature points found by shape: {', '.join(found) or '-'}")
     talk.say(f"  correspondences: {len(export.pairs)}")
-    return export, presets
+    return export
 
 
 def write_vectors(vectors: VectorSet, path: Path, talk: Talk) -> None:

@@ -298,7 +298,7 @@ StyleFile = Annotated[
     typer.Option(
         "--style",
         metavar="FILE",
-        help="What was tuned on another head.",
+        help="What `risorius tune --style-output` kept of another head, of the same method.",
         rich_help_panel=_METHOD,
         show_default=False,
     ),

@@ -26,6 +26,7 @@ from risorius.cli.options import (
     Shapes,
     SkullFile,
     SkullLandmarks,
+    StyleFile,
     Unit,
     Vectors,
     as_parts,
@@ -64,6 +65,7 @@ def rig(
     skull: SkullFile = None,
     mandible: MandibleFile = None,
     skull_landmarks: SkullLandmarks = None,
+    style: StyleFile = None,
     sheet: Annotated[
         Path | None,
         typer.Option(metavar="PNG", help="Also draw all shapes on one page.", show_default=False),
@@ -128,7 +130,7 @@ def rig(
             mandible=mandible,
             skull_landmarks=skull_landmarks,
         )
-        baked = bake_head(resolve(head, given), talk, correctives=correctives)
+        baked = bake_head(resolve(head, given), talk, correctives=correctives, style=style)
         write_and_say(baked.rig, target, talk, animation=animation, metres=metres)
         if correctives:
             say_pairs(baked.pairs, talk)

@@ -27,8 +27,10 @@ from risorius.project import (
     read_project,
     vectors_of,
 )
+from risorius.project.styled import styled, unknown_of
 from risorius.rig.bake import bake, empty_rig
 from risorius.rig.rig import Rig
+from risorius.tuning.style import read_style
 
 __all__ = [
     "Baked",
@@ -171,7 +173,12 @@ class Baked:
 
 
 def bake_head(
-    project: Project, talk: Talk, *, only: Sequence[str] | None = None, correctives: int = 0
+    project: Project,
+    talk: Talk,
+    *,
+    only: Sequence[str] | None = None,
+    correctives: int = 0,
+    style: Path | None = None,
 ) -> Baked:
     """Read a head, bind the method and bake its shapes, or `only` those named.
 
@@ -183,15 +190,25 @@ def bake_head(
         Shapes to bake; all of the project's sets if left out.
     correctives : int
         How many corrective pairs of ARKit shapes to add, of all shapes in a rig without ARKit.
+    style : Path, optional
+        What was tuned on another head.
 
     Raises
     ------
     RisoriusError
         If something of it is refused.
     """
-    presets = presets_of(project)
     vectors_of(project)  # refused now, not after the long work
+    presets = presets_of(project)
+    worn = read_style(style) if style is not None else None
+    if worn is not None:
+        worn.require_method(project.method, source=str(style))
     head = read_head(project, talk)
+    if worn is not None:
+        for name in unknown_of(project, worn):
+            talk.note(f"style: no muscle or preset has the parameter {name}")
+        project = styled(project, worn, head, source=str(style))
+        presets = presets_of(project)
     with talk.stage("parts+lips+lids"):
         mechanics = Mechanics.build(head)
     with talk.stage("muscles"):

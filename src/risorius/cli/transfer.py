@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -29,6 +30,9 @@ from risorius.cli.options import (
     as_parts,
 )
 from risorius.cli.talk import talking
+
+if TYPE_CHECKING:
+    from risorius.vectormuscle.muscle import VectorMuscle
 
 __all__ = ["transfer"]
 
@@ -70,48 +74,47 @@ def transfer(
     Example:  risorius transfer head.obj -l head.landmarks.json -o head.vectors.json
     """
     with talking(json=json, quiet=quiet, debug=debug) as talk:
-        from risorius.cli.exporting import Way, as_feature, begin_export, write_vectors
+        from risorius.cli.exporting import Way, begin_export, write_vectors
         from risorius.cli.outputs import require_json_output, require_picture_output
-        from risorius.cli.sources import Given
+        from risorius.cli.sources import Given, resolve
         from risorius.cli.tuning_pictures import write_emotions
-        from risorius.tuning.style import read_style
+        from risorius.project import presets_of
+        from risorius.project.styled import unknown_of
+        from risorius.tuning.style import Style, read_style
         from risorius.vectormuscle.export import export_muscles
 
-        target = require_json_output(output)
+        goal = require_json_output(output)
         if sheet is not None:
             require_picture_output(sheet)
-        worn = read_style(style) if style is not None else None
+        worn = read_style(style) if style is not None else Style()
+        worn.require_method("vector", source=str(style))
         given = Given(
             landmarks=landmarks, unit=unit, axes=axes, parts=as_parts(part),
-            flip_landmarks=flip_landmarks, profile=profile.value if profile else None,
-            presets=presets, vector_set=vectors,
+            flip_landmarks=flip_landmarks, method="vector",
+            profile=profile.value if profile else None, presets=presets, vector_set=vectors,
         )  # fmt: skip
-        way = Way(
-            given,
-            from_head,
-            from_landmarks,
-            as_feature(source_point, "--source-point"),
-            as_feature(target_point, "--target-point"),
-        )
-        export, book = begin_export(head, way, talk)
+        project = resolve(head, given)
+        way = Way(from_head, from_landmarks, source_point, target_point)
+        export = begin_export(project, way, talk)
+        width = export.features[1].width
+        for name in unknown_of(project, worn):
+            talk.note(f"style: no muscle or preset has the parameter {name}")
+
+        def wear(muscles: Iterable[VectorMuscle]) -> tuple[VectorMuscle, ...]:
+            return worn.on_vectors(muscles, width=width)
+
         with talk.stage("muscles"):
-            width = export.features[1].width
-            if worn is None:
-                carried = export_muscles(export)
-            else:
+            if worn.parameters:
                 carried = export_muscles(
                     export,
-                    tune=lambda now: worn.applied(
-                        now.proposal(now.group.muscles if now.group else ()), width=width
-                    ),
+                    tune=lambda now: wear(now.proposal(now.group.muscles if now.group else ())),
+                    finish=wear,
                 )
-                # Muscles outside all groups wear the style as well; it would be lost on others.
-                grouped = {name for group in export.groups for name in group.muscles}
-                rest = [muscle for muscle in carried.muscles if muscle.name not in grouped]
-                carried = carried.replaced(worn.applied(rest, width=width))
-                for name in worn.unknown(carried.muscles):
-                    talk.note(f"style: no muscle has the parameter {name}")
-        write_vectors(carried, target, talk)
+            else:
+                carried = export_muscles(export)
+        write_vectors(carried, goal, talk)
         if sheet is not None:
-            write_emotions(export.target, carried, book, sheet, talk)
+            write_emotions(
+                export.target, carried, worn.on_presets(presets_of(project)), sheet, talk
+            )
         talk.say_seconds()

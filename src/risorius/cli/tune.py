@@ -11,22 +11,28 @@ import typer
 from risorius.cli.options import (
     AsJson,
     Axes,
+    BonesOption,
     Debug,
     FlipLandmarks,
     FromHead,
     FromLandmarks,
     HeadArgument,
     LandmarkFile,
+    MandibleFile,
+    Method,
+    MuscleMapFile,
     Parts,
     Presets,
     ProfileOption,
     Quiet,
+    RecipeFile,
+    SkullFile,
+    SkullLandmarks,
     SourcePoints,
     StyleFile,
     TargetPoints,
     Unit,
     Vectors,
-    VectorsOutput,
     as_parts,
 )
 from risorius.cli.talk import talking
@@ -40,18 +46,39 @@ class StrategyName(StrEnum):
     preference = "preference"
     genetic = "genetic"
     cma = "cma"
+    least_squares = "least-squares"
 
 
-class GenesName(StrEnum):
-    """Which numbers of a muscle are tuned."""
-
-    published = "published"
-    all = "all"
+def method_of(given: Method | None, head: str) -> str | None:
+    """Return the method to tune: the one given, a project's own, else vector muscles."""
+    if given is not None:
+        return given.value
+    return None if head.lower().endswith(".json") else Method.vector.value
 
 
 def tune(
     head: HeadArgument,
-    output: VectorsOutput,
+    output: Annotated[
+        Path,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUT",
+            help="What was tuned (.json): a vector set, muscle map or outline recipe, for "
+            "--vectors, --muscle-map or --recipe of `risorius rig`; presets with "
+            "--genes intensities.",
+            show_default=False,
+        ),
+    ],
+    method: Annotated[
+        Method | None,
+        typer.Option(
+            "--method",
+            "-m",
+            help="Method whose muscles are tuned.  [default: vector, or that of a project]",
+            show_default=False,
+        ),
+    ] = None,
     expression: Annotated[
         str,
         typer.Option(
@@ -73,31 +100,52 @@ def tune(
         typer.Option(
             metavar="FILE",
             help="HEAD sculpted in the expression, same vertices: nobody is asked, the muscles are "
-            "fitted to it.",
+            "fitted to it. OBJ, PLY, GLB or NPZ, or a rig that has the shape.",
+            show_default=False,
+        ),
+    ] = None,
+    target_shape: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Shape of the rig --target.  [default: the expression]",
             show_default=False,
         ),
     ] = None,
     generations: Annotated[
-        int, typer.Option(min=1, max=1000, help="Generations with --target.")
+        int, typer.Option(min=1, max=1000, help="Generations with --target, at most.")
     ] = 15,
     strategy: Annotated[
-        StrategyName,
+        StrategyName | None,
         typer.Option(
             help="preference learns from all picks; genetic is the published way; cma needs an "
-            "extra."
+            "extra; least-squares is for --target.  [default: preference, least-squares with "
+            "--target]",
+            show_default=False,
         ),
-    ] = StrategyName.preference,
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Another seed shows other faces.")] = 0,
     no_mirror: Annotated[
         bool, typer.Option("--no-mirror", help="Tune left and right by themselves.")
     ] = False,
     genes: Annotated[
-        GenesName,
+        str,
         typer.Option(
-            help="published: the ten numbers of each muscle; all: also how skin around it "
-            "follows and bulges, which reaches further and shows wilder faces."
+            metavar="NAME,...",
+            help="published: the numbers that a publication gives a muscle; all: also how skin "
+            "around it follows and bulges, which reaches further and shows wilder faces; "
+            "intensities, alone or behind a comma: how far the controls of the expression go.",
         ),
-    ] = GenesName.published,
+    ] = "published",
+    presets_output: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Where tuned intensities go, for --presets of `risorius rig`; needed where OUT "
+            "holds muscles.",
+            show_default=False,
+        ),
+    ] = None,
     style: StyleFile = None,
     style_output: Annotated[
         Path | None,
@@ -119,6 +167,12 @@ def tune(
     from_head: FromHead = "builtin",
     from_landmarks: FromLandmarks = None,
     vectors: Vectors = None,
+    muscle_map: MuscleMapFile = None,
+    recipe: RecipeFile = None,
+    bones: BonesOption = None,
+    skull: SkullFile = None,
+    mandible: MandibleFile = None,
+    skull_landmarks: SkullLandmarks = None,
     landmarks: LandmarkFile = None,
     unit: Unit = None,
     axes: Axes = None,
@@ -132,54 +186,49 @@ def tune(
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
-    """Carry vector muscles to a head and tune them by choosing.
+    """Tune the muscles of a head by choosing.
 
     Nine faces with the same expression are drawn; you type the numbers of those you like, one to
     three of them, and get the next nine. It works over ssh: look at the picture, type numbers.
+    Vector muscles, the method unless --method names another, are carried to HEAD first.
 
     Example:  risorius tune head.obj -l head.landmarks.json -o head.vectors.json --expression joy
     """
     with talking(json=json, quiet=quiet, debug=debug) as talk:
-        from risorius.cli.exporting import Way, as_feature, begin_export, write_vectors
+        from risorius.cli.exporting import Way
         from risorius.cli.outputs import require_json_output, require_picture_output
-        from risorius.cli.sources import Given
-        from risorius.cli.tuning import TuningChoices, tune_export
-        from risorius.tuning.style import Style, read_style, write_style
+        from risorius.cli.sources import Given, resolve
+        from risorius.cli.tuning import TuningChoices, as_genes
+        from risorius.cli.tuning_run import Goals, Target, run_tuning
 
         goal = require_json_output(output)
-        picture = require_picture_output(sheet or goal.with_suffix(".png"))
-        if style_output is not None:
-            require_json_output(style_output)
-        worn = read_style(style) if style is not None else Style()
+        for other in (style_output, presets_output):
+            if other is not None:
+                require_json_output(other)
+        muscles, intensities = as_genes(genes)
         given = Given(
             landmarks=landmarks, unit=unit, axes=axes, parts=as_parts(part),
-            flip_landmarks=flip_landmarks, profile=profile.value if profile else None,
-            presets=presets, vector_set=vectors,
+            flip_landmarks=flip_landmarks, method=method_of(method, head),
+            profile=profile.value if profile else None, presets=presets, vector_set=vectors,
+            muscle_map=muscle_map, recipe=recipe, bones=bones.value if bones else None,
+            skull=skull, mandible=mandible, skull_landmarks=skull_landmarks,
         )  # fmt: skip
-        way = Way(
-            given,
-            from_head,
-            from_landmarks,
-            as_feature(source_point, "--source-point"),
-            as_feature(target_point, "--target-point"),
-        )
         choices = TuningChoices(
             tuple(name.strip() for name in expression.split(",") if name.strip()),
             picks=picks,
-            target=target,
             generations=generations,
-            strategy=strategy.value,
+            strategy=strategy.value if strategy else None,
             seed=seed,
             mirror=not no_mirror,
-            genes=genes.value,
-            sheet=picture,
+            genes=muscles,
+            intensities=intensities,
+            sheet=require_picture_output(sheet or goal.with_suffix(".png")),
             view=view,
         )
-        export, book = begin_export(head, way, talk)
-        carried, tuned = tune_export(export, book, worn, choices, talk)
-        write_vectors(carried, goal, talk)
-        talk.put(style=dict(tuned.parameters), strategy=strategy.value, seed=seed)
-        if style_output is not None:
-            write_style(tuned, style_output)
-            talk.say(f"wrote {style_output}: {len(tuned.parameters)} tuned parameters")
+        goals = Goals(goal, presets_output, style_output)
+        way = Way(from_head, from_landmarks, source_point, target_point)
+        run_tuning(
+            resolve(head, given), choices, goals, talk, way=way, style=style,
+            target=Target(target, target_shape) if target else None,
+        )  # fmt: skip
         talk.say_seconds()

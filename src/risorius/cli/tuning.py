@@ -1,30 +1,36 @@
-"""Tune the groups of an export, by a person, a script or a sculpted shape."""
+"""Tune one expression after the other: a person, a script or a sculpted shape answers."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from risorius import _formats
-from risorius._check import one_of
-from risorius.anatomy.mechanics import Mechanics
+import numpy as np
+
+from risorius._check import FloatArray, one_of
 from risorius.cli.asking import choose, scripted, typed
 from risorius.cli.talk import Talk
 from risorius.cli.tuning_pictures import FacePage
 from risorius.controls.presets import PresetBook
 from risorius.errors import ParameterError
-from risorius.tuning.candidates import sensitivity_of
-from risorius.tuning.muscle_genes import Genes, MuscleCandidates
+from risorius.head.head import Head
+from risorius.rig.face import Face
+from risorius.tuning.candidates import Candidates, FaceCandidates, Gallery, sensitivity_of
+from risorius.tuning.change import Genes
+from risorius.tuning.fit import fit_shape
+from risorius.tuning.intensities import IntensityCandidates
 from risorius.tuning.objective import ShapeObjective
 from risorius.tuning.session import Session, tune
 from risorius.tuning.style import Style
-from risorius.vectormuscle.export import EXPORT_ORDER, Export, export_muscles
-from risorius.vectormuscle.face import VectorFace
-from risorius.vectormuscle.muscle import VectorMuscle
-from risorius.vectormuscle.vector_set import VectorSet
+from risorius.vectormuscle.export import EXPORT_ORDER
 
-__all__ = ["TuningChoices", "tune_export"]
+__all__ = ["LEAST_SQUARES", "Tuning", "TuningChoices", "as_genes"]
+
+LEAST_SQUARES = "least-squares"
+"""The way to fit a target that is no strategy of choosing."""
+
+_GENES = ("published", "all", "intensities")
 
 
 @dataclass(frozen=True)
@@ -36,13 +42,15 @@ class TuningChoices:
     expressions : tuple of str
     picks : str
         ``"contact-sheet"`` or answers.
-    target : Path or None
-        Sculpted head.
     generations : int
-    strategy : str
+    strategy : str or None
+        None for what suits: `LEAST_SQUARES` with a target, preferences without.
     seed : int
     mirror : bool
-    genes : {"published", "all"}
+    genes : {"published", "all"} or None
+        Which numbers of the muscles are tuned; None for none.
+    intensities : bool
+        Whether it is tuned how far the controls of an expression go.
     sheet : Path
         Where the nine faces are drawn.
     view : str
@@ -50,12 +58,12 @@ class TuningChoices:
 
     expressions: tuple[str, ...]
     picks: str
-    target: Path | None
     generations: int
-    strategy: str
+    strategy: str | None
     seed: int
     mirror: bool
-    genes: Genes
+    genes: Genes | None
+    intensities: bool
     sheet: Path
     view: str
 
@@ -64,116 +72,161 @@ class TuningChoices:
             raise ParameterError(f"expression: give at least one of {', '.join(EXPORT_ORDER)}")
         for name in self.expressions:
             one_of("expression", name, EXPORT_ORDER)
-        if self.target is not None and len(self.expressions) > 1:
-            raise ParameterError("target: a sculpted head shows one expression; give one")
 
 
-def tune_export(
-    export: Export, presets: PresetBook, style: Style, choices: TuningChoices, talk: Talk
-) -> tuple[VectorSet, Style]:
-    """Go through the groups of an export; return the set and all that was tuned.
+def as_genes(text: str) -> tuple[Genes | None, bool]:
+    """Return which genes of muscles are tuned, and whether intensities are.
+
+    Raises
+    ------
+    ParameterError
+        If a word is none of published, all and intensities, or two contradict each other.
+    """
+    words = [word.strip() for word in text.split(",") if word.strip()]
+    for word in words:
+        one_of("genes", word, _GENES)
+    if not words or {"published", "all"} <= set(words):
+        raise ParameterError(
+            f"genes: {text!r}: give published or all, and intensities alone or behind a comma"
+        )
+    genes: Genes | None = None
+    if "published" in words:
+        genes = "published"
+    elif "all" in words:
+        genes = "all"
+    return genes, "intensities" in words
+
+
+class Tuning:
+    """The tuning of one head: its style grows from expression to expression.
 
     Parameters
     ----------
-    export : Export
-        Before its first group.
+    head : Head
     presets : PresetBook
     style : Style
         Where tuning begins.
     choices : TuningChoices
+    target : (n, 3) float64 or None
+        The head sculpted in the only expression [mm].
     talk : Talk
-
-    Raises
-    ------
-    RisoriusError
-        If something is refused.
     """
-    work = _Work(export, presets, style, choices, talk)
-    vectors = export_muscles(export, tune=work.tune_group)
-    grouped = {name for group in export.groups for name in group.muscles}
-    rest = [muscle for muscle in vectors.muscles if muscle.name not in grouped]
-    width = export.features[1].width
-    return vectors.replaced(work.style.applied(rest, width=width)), work.style
-
-
-class _Work:
-    """The tuning of one head: its style grows from group to group."""
 
     def __init__(
-        self, export: Export, presets: PresetBook, style: Style, choices: TuningChoices, talk: Talk
+        self,
+        head: Head,
+        presets: PresetBook,
+        style: Style,
+        choices: TuningChoices,
+        target: FloatArray | None,
+        talk: Talk,
     ) -> None:
         self.style = style
-        self._presets, self._choices, self._talk = presets, choices, talk
-        self._page = FacePage(export.target, choices.view)
-        self._mechanics = Mechanics.build(export.target)
+        self.presets = presets
+        self.choices = choices
+        self.ended = False
+        self._target, self._talk = target, talk
+        self._page = FacePage(head, choices.view)
         self._lines = typed() if choices.picks == "contact-sheet" else scripted(choices.picks)
-        self._ended = False
 
-    def tune_group(self, export: Export) -> Iterable[VectorMuscle]:
-        """Return the muscles of the current group as chosen, or in the style as it is."""
-        group = export.group
-        assert group is not None
-        width = export.features[1].width
-        proposal = export.proposal(group.muscles)
-        if self._ended or group.expression not in self._choices.expressions:
-            return self.style.applied(proposal, width=width)
-        with self._talk.stage("muscles"):
-            face = VectorFace.build(export.target, export.vector_set(), mechanics=self._mechanics)
-            emotion = self._presets.emotions[group.expression]
-            pose = self._presets.fit(emotion, face.controls).pose
-        choices = self._choices
-        candidates = MuscleCandidates(
-            face, group.muscles, pose, width, mirror=choices.mirror, genes=choices.genes
-        )
-        values = self._values(candidates, group.expression)
-        self.style = self.style.with_parameters(values)
-        return self.style.applied(proposal, width=width)
+    def wants(self, expression: str) -> bool:
+        """Return whether an expression is tuned; none is once somebody has ended."""
+        return not self.ended and expression in self.choices.expressions
 
-    def _values(self, candidates: MuscleCandidates, expression: str) -> dict[str, float]:
-        choices, genome = self._choices, candidates.genome
-        start = {
-            name: value for name, value in self.style.parameters.items() if name in genome.names
-        }
+    def pose_of(self, expression: str, face: Face) -> dict[str, float]:
+        """Return an expression as it is now, in the controls of a face; nothing that rests."""
+        now = self.style.on_presets(self.presets).emotions.get(expression, {})
+        fitted = self.presets.fit(now, face.controls).pose
+        return {name: value for name, value in fitted.items() if value}
+
+    def run(self, expression: str, face: Face, muscles: FaceCandidates | None) -> None:
+        """Tune an expression; what was chosen becomes part of the style.
+
+        Parameters
+        ----------
+        expression : str
+        face : Face
+            As it is now.
+        muscles : FaceCandidates or None
+            Muscles to tune; None where there are none, or none are wanted.
+        """
+        candidates: Candidates | None = muscles
+        if self.choices.intensities:
+            mirror = self.choices.mirror
+            subject = face if muscles is None else muscles
+            candidates = IntensityCandidates(subject, self.presets, expression, mirror)
+        if candidates is None:
+            self._talk.say(
+                f"{expression}: nothing to tune; its muscles belong to expressions before it"
+            )
+            return
+        self.style = self.style.with_parameters(self._values(candidates, expression))
+
+    def _values(self, candidates: Candidates, expression: str) -> Mapping[str, float]:
+        choices, genome = self.choices, candidates.genome
+        start = self.style.start_of(genome)
+        strategy = choices.strategy or (LEAST_SQUARES if self._target is not None else "preference")
+        if self._target is not None and strategy == LEAST_SQUARES:
+            return self._fitted(candidates, genome.values(start), self._target, expression)
         sensitivity = None
-        if choices.strategy == "preference":
+        if strategy == "preference":
             with self._talk.stage("sensitivity"):
                 sensitivity = sensitivity_of(candidates)
         session = Session(
-            genome,
-            strategy=choices.strategy,
-            seed=choices.seed,
-            start=start,
-            sensitivity=sensitivity,
+            genome, strategy=strategy, seed=choices.seed, start=start, sensitivity=sensitivity
         )
-        if choices.target is not None:
-            return self._fitted(candidates, session, choices.target, expression)
+        if self._target is not None:
+            return self._approached(candidates, session, self._target, expression)
+        return self._chosen(candidates, session, expression)
+
+    def _chosen(
+        self, candidates: Candidates, session: Session, expression: str
+    ) -> Mapping[str, float]:
+        gallery, sheet = Gallery(candidates), self.choices.sheet
 
         def show(now: Session) -> None:
             with self._talk.stage("nine faces"):
-                made = now.generation.candidates
-                faces = [candidates.positions(genome.named(values)) for values in made]
+                faces = gallery.faces(now.generation.candidates)
                 number = now.generation.number + 1
                 labels = [str(face + 1) for face in range(len(faces))]
-                self._page.write(
-                    choices.sheet, faces, labels, title=f"{expression}, generation {number}"
-                )
-            self._talk.say(f"{expression}, generation {number}: look at {choices.sheet}")
+                self._page.write(sheet, faces, labels, title=f"{expression}, generation {number}")
+            self._talk.say(f"{expression}, generation {number}: look at {sheet}")
 
-        forgiving = choices.picks == "contact-sheet"
-        values, self._ended = choose(session, self._lines, show, forgiving=forgiving)
+        forgiving = self.choices.picks == "contact-sheet"
+        values, self.ended = choose(session, self._lines, show, forgiving=forgiving)
         return values
 
     def _fitted(
-        self, candidates: MuscleCandidates, session: Session, target: Path, expression: str
-    ) -> dict[str, float]:
-        frame = candidates.face.head.frame
-        mesh, _ = _formats.read_head(target)
-        objective = ShapeObjective(candidates, frame.to_canonical(mesh.positions))
+        self, candidates: Candidates, start: FloatArray, target: FloatArray, expression: str
+    ) -> Mapping[str, float]:
+        with self._talk.stage("fit") as tick:
+            found = fit_shape(
+                candidates, target, start=start, iterations=self.choices.generations, progress=tick
+            )
+        self._tell(expression, found.before, found.after, target)
+        return found.values
+
+    def _approached(
+        self, candidates: Candidates, session: Session, target: FloatArray, expression: str
+    ) -> Mapping[str, float]:
+        objective = ShapeObjective(candidates, target)
         genome = candidates.genome
         before = objective.distance(genome.values(session.best))
         with self._talk.stage("fit"):
-            values = tune(session, objective, generations=self._choices.generations)
-        after = objective.distance(genome.values(values))
-        self._talk.put(distance={"before": before, "after": after, "unit": "mm"})
-        self._talk.say(f"{expression}: {before:.3f} mm from the target before, {after:.3f} after")
+            values = tune(session, objective, generations=self.choices.generations)
+        self._tell(expression, before, objective.distance(genome.values(values)), target)
         return values
+
+    def _tell(self, expression: str, before: float, after: float, target: FloatArray) -> None:
+        rest = self._page.head.positions
+        whole = float(np.sqrt(((target - rest) ** 2).sum(axis=1).mean()))
+        made = 1.0 - (after / whole) ** 2
+        self._talk.put(
+            distance={
+                "neutral": whole, "before": before, "after": after, "unit": "mm", "motion": made,
+            }
+        )  # fmt: skip
+        self._talk.say(
+            f"{expression}: {before:.3f} mm from the target before, {after:.3f} after; the neutral "
+            f"head is {whole:.3f} mm from it, so {100.0 * made:.0f} % of its motion is made"
+        )

@@ -67,6 +67,10 @@ class Archive:
         if sum(entry.file_size for entry in entries) > _UNPACKED_LIMIT:
             raise FormatError(f"{path}: unpacks to more than {_UNPACKED_LIMIT // MEGABYTE} MB")
 
+    def __contains__(self, name: str) -> bool:
+        """Return whether there is an array of this name."""
+        return f"{name}.npy" in self._entries
+
     def text(self, name: str) -> str:
         """Return a single text."""
         with self._open(name) as (file, dtype, shape):

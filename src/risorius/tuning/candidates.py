@@ -21,8 +21,8 @@ __all__ = [
     "Candidates",
     "FaceCandidates",
     "FunctionCandidates",
+    "Gallery",
     "PoseCandidates",
-    "all_positions",
     "paired_controls",
     "sensitivity_of",
 ]
@@ -138,19 +138,34 @@ def _other_side(name: str) -> str | None:
     return name[:-2] + swapped if swapped else None
 
 
-def all_positions(candidates: Candidates, rows: FloatArray) -> list[FloatArray]:
-    """Return the vertices (n, 3) of many candidates [mm], made side by side.
+class Gallery:
+    """Faces of candidates, made side by side; those that were just shown are not made again.
 
     Parameters
     ----------
     candidates : Candidates
-    rows : (c, p) float64
-        Values of each, in the order of the genome.
     """
-    genome = candidates.genome
-    named = [genome.named(row) for row in rows]
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(candidates.positions, named))
+
+    def __init__(self, candidates: Candidates) -> None:
+        self.candidates = candidates
+        self._shown: dict[bytes, FloatArray] = {}
+
+    def faces(self, rows: FloatArray) -> list[FloatArray]:
+        """Return the vertices (n, 3) of many candidates [mm].
+
+        Parameters
+        ----------
+        rows : (c, p) float64
+            Values of each, in the order of the genome.
+        """
+        genome = self.candidates.genome
+        keys = [np.ascontiguousarray(row).tobytes() for row in rows]
+        new = {key: row for key, row in zip(keys, rows) if key not in self._shown}
+        named = [genome.named(row) for row in new.values()]
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            made = dict(zip(new, pool.map(self.candidates.positions, named)))
+        self._shown = {key: made[key] if key in made else self._shown[key] for key in keys}
+        return [self._shown[key] for key in keys]
 
 
 def sensitivity_of(candidates: Candidates, *, names: Iterable[str] | None = None) -> FloatArray:
@@ -175,7 +190,7 @@ def sensitivity_of(candidates: Candidates, *, names: Iterable[str] | None = None
     # Into the range, where the start is an end of it.
     reach = np.where(start + reach <= genome.high, reach, -reach)
     moved = start + np.vstack([np.zeros(len(genome)), np.diag(reach)[rows]])
-    rest, *others = all_positions(candidates, moved)
+    rest, *others = Gallery(candidates).faces(moved)
     result = np.zeros((rest.size, len(genome)))
     for row, made in zip(rows, others):
         result[:, row] = (made - rest).ravel() * (4.0 if reach[row] > 0.0 else -4.0)

@@ -15,8 +15,8 @@ from risorius.tuning.genome import Genome, Parameter
 
 __all__ = ["IntensityCandidates", "apply_intensities", "intensity_parameters"]
 
-# A control goes at most so much of its range further, or less far.
-_SHARE = 0.5
+# A control goes at most so much of its full effect further, or less far; more closes eyes.
+_SHARE = 0.3
 
 
 def intensity_parameters(
@@ -39,7 +39,7 @@ def intensity_parameters(
     result: list[Parameter] = []
     for stem, group in paired_controls(pose, mirror=mirror).items():
         low, high = ranges.get(group[0], (0.0, 1.0))
-        value, reach = pose[group[0]], _SHARE * (high - low)
+        value, reach = pose[group[0]], _SHARE * max(abs(low), abs(high))
         least, most = max(low - value, -reach), min(high - value, reach)
         if least <= 0.0 <= most and least < most:
             result.append(Parameter(f"{expression}.{stem}", least, most, 0.0))

@@ -22,18 +22,19 @@ from risorius.tuning.genome import Genome, Parameter
 
 __all__ = ["MapCandidates", "apply_map_genes", "map_muscles", "map_parameters"]
 
-_SHIFT = Change("shift", -0.06, 0.06)
+# Wider ranges show folded skin: muscles of the map already pull as far as lips slide over teeth.
+_SHIFT = Change("shift", -0.04, 0.04)
 _AMOUNT = Change("factor", 0.5, 1.5)
-_HOLD = Change("factor", 0.4, 2.5)
-_SIZE = Change("factor", 0.7, 1.4)
+_HOLD = Change("factor", 0.5, 2.0)
+_SIZE = Change("factor", 0.75, 1.25)
 _SHARE = Change("share", 0.0, 1.0)
-_SHORTENING = Change("factor", 0.5, 1.5, most=0.95)
+_SHORTENING = Change("factor", 0.6, 1.1, most=0.95)
 # Outwards at full contraction [mm].
 _OUT = Change("add", -2.0, 2.0)
 _ENDS = tuple(f"{end}_{axis}" for end in ("origin", "insertion") for axis in "xyz")
 _SHEET: Mapping[str, Change] = MappingProxyType(
     {
-        "reach": _SIZE, "stiffness": _HOLD, "fixed_point": Change("share", 0.0, 0.6),
+        "reach": _SIZE, "stiffness": _HOLD, "fixed_point": Change("share", 0.0, 0.4),
         "tangential": _SHARE, "arch": _SHARE, "corner": _SHARE, "push": _OUT, "bulge": _OUT,
     }
 )  # fmt: skip

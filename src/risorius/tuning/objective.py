@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from risorius._check import FloatArray, as_points
 from risorius.errors import ParameterError, ShapeError
-from risorius.tuning.candidates import Candidates
+from risorius.tuning.candidates import Candidates, Gallery
 from risorius.tuning.strategy import Generation
 
 __all__ = ["MadeUpUser", "ShapeObjective"]
@@ -37,7 +38,7 @@ class ShapeObjective:
 
     def __call__(self, generation: Generation) -> tuple[int, ...]:
         """Return all candidates, the nearest first."""
-        distances = [self.distance(values) for values in generation.candidates]
+        distances = [self._apart(face) for face in self._gallery.faces(generation.candidates)]
         return tuple(np.argsort(distances, kind="stable").tolist())
 
     def distance(self, values: FloatArray) -> float:
@@ -48,7 +49,13 @@ class ShapeObjective:
         ShapeError
             If the target has another number of vertices.
         """
-        made = self.candidates.positions(self.candidates.genome.named(values))
+        return self._apart(self.candidates.positions(self.candidates.genome.named(values)))
+
+    @cached_property
+    def _gallery(self) -> Gallery:
+        return Gallery(self.candidates)
+
+    def _apart(self, made: FloatArray) -> float:
         target = as_points("target", self.target)
         if made.shape != target.shape:
             raise ShapeError(

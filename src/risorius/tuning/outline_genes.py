@@ -12,7 +12,6 @@ from risorius._check import FloatArray, one_of
 from risorius.controls.control import Pose
 from risorius.springmuscle.face import SpringFace
 from risorius.springmuscle.fit_parameters import FitParameters
-from risorius.springmuscle.queries import refit
 from risorius.springmuscle.recipe import (
     MuscleOutline,
     OutlinePoint,
@@ -20,6 +19,7 @@ from risorius.springmuscle.recipe import (
     OutlineSettings,
     Ring,
 )
+from risorius.springmuscle.redrawing import redrawn
 from risorius.tuning.change import Change, Gene, Genes, parameters_of
 from risorius.tuning.genome import Genome, Parameter
 
@@ -121,7 +121,7 @@ class OutlineCandidates:
     Parameters
     ----------
     face : SpringFace
-        On the recipe, built from a head, so that muscles can be fitted anew.
+        Built on the recipe by `SpringFace.build`.
     recipe : OutlineRecipe
         Before tuning.
     names : tuple of str
@@ -158,12 +158,7 @@ class OutlineCandidates:
 
     def face_of(self, values: Mapping[str, float]) -> SpringFace:
         """Return the face with the tuned muscles fitted anew, all others as they are."""
-        assert self.face.ground is not None
-        muscles = self.face.muscles
-        for before, outline in zip(self.recipe.muscles, self.recipe_of(values).muscles):
-            if outline is not before:
-                muscles = refit(muscles, outline, self.face.ground)
-        return self.face if muscles is self.face.muscles else self.face.with_muscles(muscles)
+        return redrawn(self.face, self.recipe, self.recipe_of(values))
 
     def positions(self, values: Mapping[str, float]) -> FloatArray:
         """Return the vertices (n, 3) of the candidate with these values [mm]."""
@@ -186,7 +181,8 @@ def _genes(outline: MuscleOutline, fit: FitParameters) -> Iterator[Gene]:
 
 def _shifts(outline: MuscleOutline) -> tuple[str, ...]:
     """Return the names of the shifts along the face; what lies across the midline stays on it."""
-    axes = "xy" if outline.mirror else "y"
+    sided = outline.mirror or outline.name.endswith(("_l", "_r"))
+    axes = "xy" if sided else "y"
     ends = ("origin", "insertion") if outline.ring is None else ("centre",)
     return tuple(f"{end}_{axis}" for end in ends for axis in axes)
 

@@ -9,16 +9,25 @@ from pathlib import Path
 from typing import Any, cast
 
 from risorius._check import as_number
-from risorius.errors import FormatError
+from risorius.controls.presets import PresetBook
+from risorius.errors import FormatError, ParameterError
 from risorius.io.atomic import write_bytes
 from risorius.io.bounded import check_schema, read_json
-from risorius.tuning.muscle_genes import apply_genes, muscle_parameters
+from risorius.layered.muscle_map import MuscleMap
+from risorius.springmuscle.fit_parameters import FitParameters
+from risorius.springmuscle.recipe import OutlineRecipe
+from risorius.tuning.genome import Genome
+from risorius.tuning.intensities import apply_intensities
+from risorius.tuning.map_genes import apply_map_genes
+from risorius.tuning.muscle_genes import apply_genes
+from risorius.tuning.outline_genes import apply_outline_genes
 from risorius.vectormuscle.muscle import VectorMuscle
 
 __all__ = ["Style", "parse_style", "read_style", "write_style"]
 
 SCHEMA = "risorius/style"
 VERSION = 1
+_METHODS = {"layered": "layered muscles", "springs": "spring muscles", "vector": "vector muscles"}
 
 
 @dataclass(frozen=True)
@@ -28,7 +37,8 @@ class Style:
     Parameters
     ----------
     parameters : mapping of str to float
-        By name; see `muscle_parameters` for what they mean.
+        By name: of muscles, see `muscle_parameters`, `map_parameters` and `outline_parameters`;
+        and how far controls go in an expression, see `intensity_parameters`.
     method : str
         The method whose parameters they are.
     """
@@ -40,8 +50,43 @@ class Style:
         """Return the style with more parameters; new values replace old ones."""
         return Style({**self.parameters, **values}, self.method)
 
-    def applied(self, muscles: Iterable[VectorMuscle], *, width: float) -> tuple[VectorMuscle, ...]:
-        """Return muscles of another head in this style.
+    def without_muscles(self, names: Iterable[str]) -> Style:
+        """Return the style without what it says of muscles (without side)."""
+        gone = set(names)
+        kept = {
+            name: value
+            for name, value in self.parameters.items()
+            if gone.isdisjoint((name.partition(".")[0], _stem(name.partition(".")[0])))
+        }
+        return Style(kept, self.method)
+
+    def start_of(self, genome: Genome) -> dict[str, float]:
+        """Return what the style says about a genome, inside its bounds."""
+        return {
+            each.name: min(max(self.parameters[each.name], each.low), each.high)
+            for each in genome.parameters
+            if each.name in self.parameters
+        }
+
+    def require_method(self, method: str, *, source: str) -> None:
+        """Refuse a style of another method.
+
+        Raises
+        ------
+        ParameterError
+            If its muscles are not those of `method`.
+        """
+        if self.method != method:
+            raise ParameterError(
+                f"{source}: this style was tuned on {_METHODS.get(self.method, self.method)}, not "
+                f"on {_METHODS.get(method, method)}; use it with --method {self.method}, or tune "
+                "one for this method"
+            )
+
+    def on_vectors(
+        self, muscles: Iterable[VectorMuscle], *, width: float
+    ) -> tuple[VectorMuscle, ...]:
+        """Return vector muscles of another head in this style.
 
         Parameters
         ----------
@@ -52,15 +97,26 @@ class Style:
         """
         return tuple(apply_genes(muscle, self.parameters, width=width) for muscle in muscles)
 
-    def unknown(self, muscles: Iterable[VectorMuscle]) -> tuple[str, ...]:
-        """Return the parameters that none of `muscles` has."""
-        listed = list(muscles)
-        known = {
-            parameter.name
-            for mirror in (True, False)
-            for parameter in muscle_parameters(listed, mirror=mirror, genes="all")
-        }
-        return tuple(name for name in self.parameters if name not in known)
+    def on_map(self, muscle_map: MuscleMap) -> MuscleMap:
+        """Return a muscle map in this style; it fits every head."""
+        return apply_map_genes(muscle_map, self.parameters)
+
+    def on_recipe(
+        self, recipe: OutlineRecipe, *, fit: FitParameters | None = None
+    ) -> OutlineRecipe:
+        """Return an outline recipe in this style; it fits every head."""
+        return apply_outline_genes(recipe, self.parameters, fit=fit)
+
+    def on_presets(self, presets: PresetBook) -> PresetBook:
+        """Return presets in this style."""
+        return apply_intensities(presets, self.parameters)
+
+    def unknown(self, known: Iterable[str]) -> tuple[str, ...]:
+        """Return the parameters that are not among `known`, with or without their side."""
+        names = set(known)
+        return tuple(
+            name for name in self.parameters if name not in names and _sideless(name) not in names
+        )
 
     def to_json(self) -> dict[str, Any]:
         """Return the file's content."""
@@ -71,6 +127,16 @@ class Style:
             "method": self.method,
             "parameters": rounded,
         }
+
+
+def _stem(name: str) -> str:
+    return name[:-2] if name.endswith(("_l", "_r")) else name
+
+
+def _sideless(name: str) -> str:
+    """Return the name of a parameter whose muscle or control has lost its side."""
+    muscle, dot, gene = name.partition(".")
+    return f"{_stem(muscle)}{dot}{_stem(gene)}"
 
 
 def parse_style(data: Mapping[str, Any], *, source: str) -> Style:

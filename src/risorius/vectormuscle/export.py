@@ -113,6 +113,7 @@ class Export:
         parameters: ExportParameters | None = None,
         features: tuple[FeatureSet, FeatureSet] | None = None,
         presets: PresetBook | None = None,
+        first: Iterable[str] = (),
     ) -> Export:
         """Return the export before the first group.
 
@@ -129,6 +130,8 @@ class Export:
             Of source and target, if a person has edited them.
         presets : PresetBook, optional
             Their emotions say which muscles are judged by which expression.
+        first : iterable of str
+            Expressions that are judged before all others; see `muscle_groups`.
 
         Raises
         ------
@@ -148,7 +151,7 @@ class Export:
                     place = source.landmarks.position(name)
                     there = target.landmarks.position(name)
                     pairs = pairs.with_pair(name, place, there, near=near)
-        groups = muscle_groups(fitted, presets or default_presets())
+        groups = muscle_groups(fitted, presets or default_presets(), first=first)
         return Export(source, target, fitted, chosen, both, groups, pairs)
 
     @cached_property
@@ -236,15 +239,26 @@ class Export:
         return float(np.linalg.cond(np.sqrt(squared + warp.radii**2)))
 
 
-def muscle_groups(vectors: VectorSet, presets: PresetBook) -> tuple[MuscleGroup, ...]:
+def muscle_groups(
+    vectors: VectorSet, presets: PresetBook, *, first: Iterable[str] = ()
+) -> tuple[MuscleGroup, ...]:
     """Return the muscles of a set by the first expression that contracts them.
 
     Muscles that no emotion contracts belong to no group: they go through the last warp.
+
+    Parameters
+    ----------
+    vectors : VectorSet
+    presets : PresetBook
+    first : iterable of str
+        Expressions that go before all others, and so have all their muscles: those that a person
+        will look at. Both kinds keep the order of `EXPORT_ORDER`.
     """
     names = [muscle.name for muscle in vectors.muscles]
+    ahead = set(first)
     taken: set[str] = set()
     groups: list[MuscleGroup] = []
-    for expression in EXPORT_ORDER:
+    for expression in sorted(EXPORT_ORDER, key=lambda name: name not in ahead):
         pose = presets.emotions.get(expression, {})
         new = tuple(name for name in names if pose.get(name, 0.0) and name not in taken)
         taken.update(new)
@@ -254,7 +268,10 @@ def muscle_groups(vectors: VectorSet, presets: PresetBook) -> tuple[MuscleGroup,
 
 
 def export_muscles(
-    export: Export, *, tune: Callable[[Export], Iterable[VectorMuscle]] | None = None
+    export: Export,
+    *,
+    tune: Callable[[Export], Iterable[VectorMuscle]] | None = None,
+    finish: Callable[[tuple[VectorMuscle, ...]], Iterable[VectorMuscle]] | None = None,
 ) -> VectorSet:
     """Go through all groups and return the set on the target.
 
@@ -265,6 +282,8 @@ def export_muscles(
     tune : callable, optional
         Called for each group; returns its muscles as a person wants them. Without it the
         muscles go through the first warp untouched.
+    finish : callable, optional
+        Called once with the muscles that are in no group, on the target; returns them changed.
 
     References
     ----------
@@ -272,4 +291,9 @@ def export_muscles(
     """
     while tune is not None and export.group is not None:
         export = export.accept(tune(export))
-    return export.vector_set()
+    vectors = export.vector_set()
+    if finish is None:
+        return vectors
+    grouped = {name for group in export.groups for name in group.muscles}
+    rest = tuple(muscle for muscle in vectors.muscles if muscle.name not in grouped)
+    return vectors.replaced(finish(rest))

@@ -1,0 +1,160 @@
+"""Run `risorius tune`: bind the head, tune, write what was tuned."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from risorius._check import FloatArray
+from risorius.anatomy.mechanics import Mechanics
+from risorius.cli.exporting import Way, begin_export
+from risorius.cli.sources import read_head
+from risorius.cli.talk import Talk
+from risorius.cli.tuning import LEAST_SQUARES, Tuning, TuningChoices
+from risorius.cli.tuning_export import tune_export, tune_muscles
+from risorius.errors import ParameterError
+from risorius.head.head import Head
+from risorius.io.atomic import write_bytes
+from risorius.project import Project, presets_of
+from risorius.project.preset_document import presets_document_of, with_emotions
+from risorius.project.styled import unknown_of
+from risorius.project.tunable import tunable_of
+from risorius.tuning.style import Style, read_style, write_style
+from risorius.tuning.target import read_target
+
+__all__ = ["Goals", "Target", "run_tuning"]
+
+
+@dataclass(frozen=True)
+class Goals:
+    """Where results go: OUT, presets beside muscles, the style."""
+
+    output: Path
+    presets: Path | None = None
+    style: Path | None = None
+
+
+@dataclass(frozen=True)
+class Target:
+    """A sculpted head, or a shape of a rig."""
+
+    path: Path
+    shape: str | None = None
+
+
+def run_tuning(
+    project: Project,
+    choices: TuningChoices,
+    goals: Goals,
+    talk: Talk,
+    *,
+    way: Way,
+    style: Path | None = None,
+    target: Target | None = None,
+) -> None:
+    """Tune the muscles of a project's head and write them.
+
+    Parameters
+    ----------
+    project : Project
+    choices : TuningChoices
+    goals : Goals
+    talk : Talk
+    way : Way
+        From where vector muscles are carried.
+    style : Path, optional
+        Where to begin.
+    target : Target, optional
+        What the only expression shall look like.
+
+    Raises
+    ------
+    RisoriusError
+        If something is refused.
+    """
+    _require(project, choices, goals, way, target)
+    worn = Style(method=project.method) if style is None else read_style(style)
+    worn.require_method(project.method, source=str(style))
+    if style is not None:
+        for name in unknown_of(project, worn):
+            talk.note(f"style: no muscle or preset has the parameter {name}")
+    presets = presets_of(project)
+
+    def tuning_of(head: Head) -> Tuning:
+        return Tuning(head, presets, worn, choices, _goal(head, choices, target), talk)
+
+    if project.method == "vector":
+        export = begin_export(project, way, talk, first=choices.expressions)
+        tuning = tuning_of(export.target)
+        document = tune_export(export, tuning, talk).to_json()
+    else:
+        head = read_head(project, talk)
+        tuning = tuning_of(head)
+        with talk.stage("muscles"):
+            subject = tunable_of(project, head, mechanics=Mechanics.build(head))
+        document = tune_muscles(subject, tuning)
+    if choices.genes is not None:
+        _write(document, goals.output, talk, f"{len(document['muscles'])} muscles")
+        talk.put(muscles=[muscle["name"] for muscle in document["muscles"]])
+    if choices.intensities:
+        path = goals.output if goals.presets is None else goals.presets
+        emotions = tuning.style.on_presets(presets).emotions
+        wanted = {name: emotions[name] for name in choices.expressions}
+        changed = with_emotions(presets_document_of(project), wanted)
+        _write(changed, path, talk, f"presets with {', '.join(wanted)} as tuned")
+    talk.put(
+        output=goals.output, style=dict(tuning.style.parameters), method=project.method,
+        seed=choices.seed,
+    )  # fmt: skip
+    if goals.style is not None:
+        write_style(tuning.style, goals.style)
+        talk.say(f"wrote {goals.style}: {len(tuning.style.parameters)} tuned parameters")
+
+
+def _goal(head: Head, choices: TuningChoices, target: Target | None) -> FloatArray | None:
+    if target is None:
+        return None
+    return read_target(target.path, head, shape=target.shape, expression=choices.expressions[0])
+
+
+def _write(document: dict[str, Any], path: Path, talk: Talk, what: str) -> None:
+    text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
+    write_bytes(path, f"{text}\n".encode())
+    talk.say(f"wrote {path}: {what}")
+
+
+def _require(
+    project: Project, choices: TuningChoices, goals: Goals, way: Way, target: Target | None
+) -> None:
+    """Refuse wishes that contradict each other, before the long work."""
+    muscles = choices.genes is not None
+    if target is not None and len(choices.expressions) > 1:
+        raise ParameterError("target: a sculpted head shows one expression; give one")
+    if target is None and choices.strategy == LEAST_SQUARES:
+        raise ParameterError(
+            f"strategy: {LEAST_SQUARES} needs a shape to fit; give --target, or another strategy"
+        )
+    if choices.intensities and muscles and goals.presets is None:
+        raise ParameterError(
+            "genes: intensities are kept in presets, and OUT holds the muscles; name a file for "
+            "them with --presets-output"
+        )
+    if goals.presets is not None and not (choices.intensities and muscles):
+        raise ParameterError(
+            "presets-output: is for intensities that are tuned beside muscles; add intensities to "
+            "--genes, or leave it out"
+        )
+    if project.method == "vector":
+        return
+    if muscles and not choices.mirror:
+        raise ParameterError(
+            f"no-mirror: {project.method} muscles are drawn once for both sides; only vector "
+            "muscles and --genes intensities have sides of their own"
+        )
+    if way != Way():
+        raise ParameterError(
+            "from: only vector muscles are carried from another head; a style carries what was "
+            f"tuned of {project.method} muscles (--style)"
+        )
