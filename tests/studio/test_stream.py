@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from risorius.mesh.core import TriMesh
 from risorius.studio import frames
 from risorius.studio.hub import WINDOW, Connection, Hub
+from risorius.studio.moment import Moment
 from risorius.studio.scene import SceneMesh
 
 REST = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
@@ -41,7 +42,7 @@ def test_a_scene_brings_vertices_faces_and_colours() -> None:
 
 def test_a_frame_holds_displacements_to_a_few_micrometres() -> None:
     posed = REST + [[1.0 / 3.0, -40.0, 0.0]]
-    message = frames.frame({"skin": REST}, {"skin": posed}, epoch=1, serial=9)
+    message = frames.frame({"skin": REST}, Moment({"skin": posed}), epoch=1, serial=9)
     head, facts, blob = _read(message)
     assert head[:3] == (frames.FRAME, 1, 9)
     assert facts == {"moved": ["skin"], "painted": []}
@@ -50,8 +51,26 @@ def test_a_frame_holds_displacements_to_a_few_micrometres() -> None:
 
 
 def test_a_motion_beyond_the_range_is_cut_off_not_wrapped() -> None:
-    message = frames.frame({"skin": REST}, {"skin": REST + 1000.0}, epoch=1, serial=1)
+    message = frames.frame({"skin": REST}, Moment({"skin": REST + 1000.0}), epoch=1, serial=1)
     assert np.frombuffer(_read(message)[2], "<i2", 9).min() == 32767
+
+
+def test_a_frame_says_how_the_head_turns() -> None:
+    turn = (0.0, 1.0, 2.0, 0.0, 0.0, 0.6, 0.8)
+    message = frames.frame({"skin": REST}, Moment({"skin": REST}, turn), epoch=1, serial=1)
+    assert _read(message)[1]["turn"] == list(turn)
+
+
+def test_a_take_brings_only_targets_that_move() -> None:
+    weights = np.array([[0.0, 0.5, 0.0], [0.0, 1.0, 0.25]])
+    turns = np.tile([0.0, 0.0, 0.0, 1.0], (2, 1))
+    head, facts, blob = _read(frames.take(weights, turns, epoch=3, facts={"number": 7}))
+    assert head[:2] == (frames.TAKE, 3)
+    assert facts == {"frames": 2, "columns": [1, 2], "turns": True, "number": 7}
+    assert np.frombuffer(blob, "<f4", 4).tolist() == [0.5, 0.0, 1.0, 0.25]
+    assert len(blob) == 4 * 4 + 2 * 16
+    facts = _read(frames.take(weights, None, epoch=3, facts={}))[1]
+    assert facts["turns"] is False
 
 
 class _Slow:
@@ -114,6 +133,17 @@ def test_the_hub_waits_until_a_page_can_draw() -> None:
         await asyncio.wait_for(waiting, 1.0)
 
     _run(steps)
+
+
+def test_a_page_is_known_by_its_name() -> None:
+    hub = Hub()
+    own = Connection(_Slow().send, "a")
+    for connection in (own, Connection(_Slow().send, "b")):
+        hub.add(connection)
+    assert hub.of("a") is own
+    assert hub.of("c") is None
+    hub.remove(own)
+    assert hub.of("a") is None
 
 
 @pytest.mark.parametrize("text", ["", "ack", "ack -1", "ack x", "ack 99999", "nack 1", "ack ²"])

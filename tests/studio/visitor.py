@@ -75,12 +75,26 @@ class Visitor:
 
     def positions(self, mesh: str) -> np.ndarray:
         """The vertices of a mesh as the page shows them."""
-        flat = self.page.evaluate(
-            "n => Array.from(risoriusViewport.meshes.byName.get(n)"
-            ".mesh.geometry.attributes.position.array)",
-            mesh,
-        )
+        flat = self.page.evaluate("n => risoriusViewport.shown(n)", mesh)
         return np.array(flat).reshape(-1, 3)
+
+    def drop(self, path: Path, mark: str = ".rv-canvas") -> None:
+        """Drop a text file on the picture, or on what a selector finds."""
+        self.page.evaluate(
+            """async ([where, name, text]) => {
+              const files = new DataTransfer();
+              files.items.add(new File([text], name));
+              for (const kind of ["dragenter", "dragover", "drop"]) {
+                const event = new DragEvent(
+                  kind, { dataTransfer: files, bubbles: true, cancelable: true });
+                const field = document.querySelector(`${where} .q-uploader__dnd`);
+                (field ?? document.querySelector(where)).dispatchEvent(event);
+                if (!event.defaultPrevented && kind == "drop") throw Error("the page would leave");
+                await new Promise((done) => setTimeout(done, 60));
+              }
+            }""",
+            [mark, path.name, path.read_text()],
+        )
 
     def has(self, mesh: str) -> bool:
         return self.page.evaluate("n => risoriusViewport.meshes.byName.has(n)", mesh)

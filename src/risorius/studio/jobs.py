@@ -27,6 +27,11 @@ class Job:
         """Stop at the next step."""
         self._stop.set()
 
+    @property
+    def cancelled(self) -> bool:
+        """Whether a person stopped it."""
+        return self._stop.is_set()
+
     def step(self, stage: str) -> None:
         """Begin a stage.
 
@@ -51,5 +56,5 @@ class Job:
         self._check()
 
     def _check(self) -> None:
-        if self._stop.is_set():
+        if self.cancelled:
             raise Cancelled(f"{self.title}: cancelled")

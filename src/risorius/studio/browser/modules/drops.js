@@ -11,17 +11,12 @@ export class Drops {
     window.addEventListener("drop", this.done);
   }
 
-  // Fields for uploads take their files themselves.
-  own(e) {
-    return e.target instanceof Element && e.target.closest(".q-uploader");
-  }
-
   drag(e) {
-    if (!this.own(e)) e.preventDefault();
+    e.preventDefault();
   }
 
   async drop(e) {
-    if (this.own(e)) return;
+    if (e.defaultPrevented) return; // a field for uploads has taken it
     e.preventDefault();
     const files = [...(e.dataTransfer?.files ?? [])];
     // A head before its landmarks.
