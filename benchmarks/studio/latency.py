@@ -17,10 +17,10 @@ import numpy as np
 
 from risorius.anatomy.template import builtin_head
 from risorius.project import Project, write_project
-from risorius.studio.work import work_of
 from risorius.studio.scene import stage_of
+from risorius.studio.showing import Show, frame_of
 from risorius.studio.subject import build_subject
-from risorius.studio.workshop import Show, _frame
+from risorius.studio.work import work_of
 from tests.studio.server import pages, studio
 from tests.studio.visitor import Visitor
 
@@ -33,11 +33,11 @@ def server_cost(project: Project, name: str) -> None:
     stage = stage_of(build_subject(work_of(project)))
     count = sum(each.mesh.vertex_count for each in stage.meshes)
     for groups in ({"skin", "parts", "skull"}, {"skin", "parts", "skull", "muscles"}):
-        message = _frame(stage, POSE, Show(), groups, (1, 1))
+        message = frame_of(stage, POSE, Show(), groups, (1, 1))
         assert len(message) > 1000
         start = time.process_time()
         for _ in range(10):
-            _frame(stage, POSE, Show(), groups, (1, 1))
+            frame_of(stage, POSE, Show(), groups, (1, 1))
         cost = 100.0 * (time.process_time() - start)
         what = "with" if "muscles" in groups else "without"
         print(f"{name}: {count} vertices, {what} muscles: {cost:.1f} ms, {len(message)} bytes")
@@ -48,7 +48,7 @@ def _resident(process_id: int) -> float:
     return int(words[1]) * 4096 / 1e6
 
 
-def _key_to_frame(visitor: Visitor) -> float:
+def _key_toframe_of(visitor: Visitor) -> float:
     before = visitor.page.evaluate("risoriusViewport.stats.serial")
     start = time.perf_counter()
     visitor.page.keyboard.press("ArrowRight")
@@ -70,7 +70,7 @@ def in_browser(project: Project, seconds: float) -> None:
             slider.evaluate(
                 "e => (e.matches('[tabindex]') ? e : e.querySelector('[tabindex]')).focus()"
             )
-            times = [_key_to_frame(visitor) for _ in range(25)][5:]
+            times = [_key_toframe_of(visitor) for _ in range(25)][5:]
             print(
                 f"slider to drawn frame: median {statistics.median(times):.0f} ms, "
                 f"worst {max(times):.0f} ms"

@@ -16,13 +16,13 @@ from risorius.layered import default_muscle_map
 from risorius.layered.muscle import Sheet
 from risorius.project import Project
 from risorius.spatial.closest import closest_points
-from risorius.studio.work import Work, work_of
+from risorius.studio.drawing.layered import RingSketch, SheetSketch
 from risorius.studio.jobs import Job
 from risorius.studio.places import Place, place_of
 from risorius.studio.scene import Stage, stage_of
-from risorius.studio.sketch import Sketch
 from risorius.studio.subject import build_subject
 from risorius.studio.tuner import Tuner
+from risorius.studio.work import Work, work_of
 
 LINE = np.array([[50.0, -25.0, 68.0], [41.0, -46.0, 77.0], [29.0, -64.0, 85.0]])
 
@@ -48,12 +48,14 @@ def _places(points: np.ndarray) -> list[Place]:
 
 
 def test_three_clicks_make_a_sheet_through_the_clicked_points() -> None:
-    sketch = Sketch("sheet", "smiler")
+    sketch = SheetSketch("smiler")
     subject = _stage().subject
     for place in _places(LINE):
         sketch.put(place)
-    muscle = sketch.muscle(subject.space, subject.work.muscle_map)
-    assert muscle is not None and isinstance(muscle.shape, Sheet)
+    drawn = sketch.drawn(subject.work, subject)
+    assert drawn is not None and drawn.name == "smiler_l"
+    muscle = drawn.work.muscle_map.by_name["smiler"]
+    assert isinstance(muscle.shape, Sheet)
     assert "cranium" in muscle.on
     back = subject.space.to_head(muscle.shape.line)
     clicked = np.array([place.position for place in sketch.lines[0]])
@@ -64,7 +66,7 @@ def test_three_clicks_make_a_sheet_through_the_clicked_points() -> None:
 
 
 def test_a_ring_needs_two_loops() -> None:
-    sketch = Sketch("sphincter", "closer")
+    sketch = RingSketch("closer")
     angle = np.linspace(0.0, 2.0 * np.pi, 7)[:-1]
     for radius in (12.0, 20.0):
         loop = np.array([40.0, 70.0, 70.0]) + radius * np.stack(
@@ -75,12 +77,13 @@ def test_a_ring_needs_two_loops() -> None:
         done = sketch.close()
     assert done
     subject = _stage().subject
-    muscle = sketch.muscle(subject.space, subject.work.muscle_map)
-    assert muscle is not None and muscle.kind == "sphincter"
+    drawn = sketch.drawn(subject.work, subject)
+    assert drawn is not None
+    assert drawn.work.muscle_map.by_name["closer"].kind == "sphincter"
 
 
 def test_taking_back_goes_point_by_point_into_the_line_before() -> None:
-    sketch = Sketch("sheet", "x")
+    sketch = SheetSketch("x")
     for place in _places(LINE):
         sketch.put(place)
     sketch.close()
@@ -88,7 +91,7 @@ def test_taking_back_goes_point_by_point_into_the_line_before() -> None:
 
 
 def test_a_line_that_is_too_short_is_refused() -> None:
-    sketch = Sketch("sheet", "x")
+    sketch = SheetSketch("x")
     sketch.put(_places(LINE)[0])
     with pytest.raises(ParameterError, match="needs 2 points"):
         sketch.close()

@@ -58,6 +58,10 @@ def _influence(subject: Subject, muscles: tuple[str, ...]) -> FloatArray | None:
     count = subject.head.skin.vertex_count
     total = np.zeros(count)
     fields: Mapping[str, FloatArray] = subject.bench.face.fields if subject.bench else {}
+    if subject.spring_face is not None:
+        fields = subject.spring_face.driver.fields
+        names = {m.name: m.action.control for m in subject.spring_face.muscles.muscles}
+        muscles = tuple(names.get(name, name) for name in muscles)
     vector = subject.vector_face
     for name in muscles:
         if name in fields:

@@ -31,6 +31,7 @@ body, .q-btn, .q-field { font-family: Roboto, system-ui, sans-serif; font-size:1
 .st-view { flex:1; position:relative; min-width:0; height:100%; }
 .st-title { font-size:15px; font-weight:500; }
 .st-help { color:var(--dim); line-height:1.4; }
+.st-warn { color:#f0a08f; line-height:1.4; overflow-wrap:anywhere; }
 .st-group { width:100%; border:1px solid var(--line); border-radius:8px; padding:8px 10px;
   gap:4px; background:#23272c; }
 .st-head { font-size:11px; letter-spacing:.07em; text-transform:uppercase; color:var(--dim); }

@@ -67,6 +67,8 @@ class Page:
         for what in ("document", "face", "pose", "show"):
             self.hear(what)
         self.active.enter()
+        if shop.document.notice:
+            self.refuse(shop.document.notice)
 
     def _build_panels(self) -> None:
         with ui.element("div").classes("st-tabs"):

@@ -46,9 +46,24 @@ class Viewport(
         *,
         handles: Sequence[Mapping[str, Any]] = (),
         lines: Sequence[Mapping[str, Any]] = (),
+        segments: Sequence[Mapping[str, Any]] = (),
+        dots: Sequence[Mapping[str, Any]] = (),
     ) -> None:
-        """Show handles and lines instead of those that are there."""
-        self.run_method("overlay", {"handles": list(handles), "lines": list(lines)})
+        """Show these instead of what is there.
+
+        Parameters
+        ----------
+        handles : sequence of mapping
+            Points that can be dragged: id, at, normal, colour, label, on.
+        lines : sequence of mapping
+            Tubes through points: points, colour, width.
+        segments : sequence of mapping
+            Many thin lines: points, two by two in one row of numbers, and colour.
+        dots : sequence of mapping
+            Points that are only seen: at, colour.
+        """
+        content = {"handles": handles, "lines": lines, "segments": segments, "dots": dots}
+        self.run_method("overlay", {name: list(value) for name, value in content.items()})
 
     def look(self, preset: str) -> None:
         """Turn the camera: front, three_quarter, left, right, eyes or mouth."""

@@ -5,10 +5,8 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, TypeVar
-
-import numpy as np
 
 from risorius.controls.control import Control, Pose
 from risorius.errors import ParameterError, RisoriusError
@@ -16,36 +14,16 @@ from risorius.rig.rig import Rig
 from risorius.studio import frames
 from risorius.studio.baking import bake_subject
 from risorius.studio.document import Document
-from risorius.studio.heat import heat_of, paint
 from risorius.studio.hub import Hub
 from risorius.studio.jobs import Job
-from risorius.studio.moment import Moment, Played
 from risorius.studio.scene import GROUPS, Stage, stage_of
+from risorius.studio.showing import Show, facts_of, frame_of
 from risorius.studio.subject import Subject, build_subject
 from risorius.studio.work import Work
 
-__all__ = ["Show", "Workshop", "same_face"]
+__all__ = ["Workshop", "same_face"]
 
 Result = TypeVar("Result")
-
-
-@dataclass(frozen=True, eq=False)
-class Show:
-    """What the face shows now, beside the sliders.
-
-    Parameters
-    ----------
-    heat : str
-        One of `HEATS`.
-    selected : str
-        Muscle, with or without side; empty for none.
-    played : callable or None
-        Gives what stands in for the pose, while a stream plays for example.
-    """
-
-    heat: str = "none"
-    selected: str = ""
-    played: Played | None = None
 
 
 class Workshop:
@@ -69,6 +47,7 @@ class Workshop:
         self.draft: Work | None = None
         self.draft_problem = ""
         self._refused: Work | None = None
+        self._told = document.notice
         self.problem = ""
         self.built = asyncio.Event()
         self._wanted: dict[object, frozenset[str]] = {}
@@ -100,7 +79,7 @@ class Workshop:
         return await loop.run_in_executor(self._worker, lambda: function(*arguments))
 
     def tell(self, what: str) -> None:
-        """Tell all pages what changed: document, face, pose, show, problem, bake or stream."""
+        """Tell all pages what changed: document, face, pose, show, draft, problem, bake, stream."""
         for listener in tuple(self.listeners):
             listener(what)
 
@@ -198,6 +177,9 @@ class Workshop:
         """Tell of a new state, and where it is kept if it had to move."""
         self.tell("document")
         self.tell("pose")
+        if self.document.notice != self._told:
+            self._told = self.document.notice
+            self.complain(self._told)
         keeper = self.document.keeper
         if keeper.moved_from is not None:
             old, keeper.moved_from = keeper.moved_from, None
@@ -272,11 +254,12 @@ class Workshop:
     async def _pose(self) -> None:
         assert self.stage is not None
         self._serial += 1
-        pose = {name: value for name, value in self.pose.items() if value}
+        known = {control.name for control in self.controls}
+        pose = {name: value for name, value in self.pose.items() if value and name in known}
         groups = {"skin"}.union(*self._wanted.values())
         try:
             message = await self.work(
-                _frame, self.stage, pose, self.show, groups, (self.epoch, self._serial)
+                frame_of, self.stage, pose, self.show, groups, (self.epoch, self._serial)
             )
         except RisoriusError as error:
             self.complain(str(error))
@@ -288,7 +271,7 @@ class Workshop:
         assert self.stage is not None
         meshes = [each for each in self.stage.meshes if each.group == "muscles" or not only_muscles]
         replaced = ("muscles",) if only_muscles else GROUPS
-        facts = {} if only_muscles else _facts(self.stage)
+        facts = {} if only_muscles else facts_of(self.stage)
         return frames.scene(meshes, epoch=self.epoch, replaced=replaced, facts=facts)
 
     def greet(self, put: Callable[[bytes], None]) -> None:
@@ -308,42 +291,3 @@ def same_face(work: Work, other: Work) -> bool:
 
 def _built(work: Work, subject: Subject | None, stage: Stage | None) -> Stage:
     return stage_of(build_subject(work, subject), stage)
-
-
-def _facts(stage: Stage) -> dict[str, Any]:
-    head = stage.subject.head
-    marks = head.landmarks
-    low, high = (marks.position(name) if name in marks else None for name in ("2.1", "11.1"))
-    if low is None or high is None:
-        points = head.skin.mesh.positions
-        low, high = points.min(axis=0), points.max(axis=0)
-    centre = 0.5 * (low + high)
-    eyes = [name for name in ("3.7", "3.11", "3.8", "3.12") if name in marks]
-    mouth = [name for name in ("8.3", "8.4") if name in marks]
-    spots = {"eyes": eyes, "mouth": mouth}
-    return {
-        "centre": [0.0, float(centre[1]), float(centre[2]) - 0.2 * head.height],
-        "height": float(np.linalg.norm(high - low)),
-        "spots": {
-            name: marks.positions(found).mean(axis=0).tolist()
-            for name, found in spots.items()
-            if found
-        },
-    }
-
-
-def _frame(
-    stage: Stage, pose: Pose, show: Show, groups: set[str], numbers: tuple[int, int]
-) -> bytes:
-    subject = stage.subject
-    if show.played is None:
-        moment = Moment(stage.posed(pose, subject.face.pose(pose), groups))
-    else:
-        moment = show.played(stage, groups)
-    heat = None
-    if show.heat != "none":
-        names = (show.selected,) if show.selected else ()
-        heat = heat_of(show.heat, subject, moment.meshes["skin"], muscles=names)
-    rest = {each.name: each.mesh.positions for each in stage.meshes}
-    colours = {} if heat is None else {"skin": paint(heat[0], heat[1])}
-    return frames.frame(rest, moment, epoch=numbers[0], serial=numbers[1], paint=colours)

@@ -11,10 +11,10 @@ from risorius._check import FloatArray, IntArray
 from risorius.anatomy.jaw import JawPose
 from risorius.controls.control import Pose, resolve_pose
 from risorius.mesh.core import TriMesh
-from risorius.springmuscle.contraction import Contraction
+from risorius.springmuscle.contraction import Contracted, Contraction
 from risorius.springmuscle.face import SpringFace
 
-__all__ = ["SpringBodies"]
+__all__ = ["SpringBodies", "contracted"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,16 +47,21 @@ class SpringBodies:
 
     def posed(self, pose: Pose) -> dict[str, FloatArray]:
         """Return the vertices (k, 3) of every body in a pose, by muscle [mm]."""
-        face, muscles = self.face, self.face.muscles
-        values = resolve_pose(face.controls, pose).values
-        jaw = JawPose(*(values.get(f"jaw_{n}", 0.0) for n in ("pitch", "yaw", "protrusion")))
-        points, aims = muscles.moved_with_jaw(face.mechanics.jaw, jaw)
-        now = self._contraction(muscles.contractions(values), points=points, aims=aims)
+        muscles, now = self.face.muscles, contracted(self.face, pose, self._contraction)
         placed = now.centres[:, None] + np.einsum("sij,svj->svi", now.axes, self._local)
         return {
             muscle.name: placed[muscles.segment_muscle == number].reshape(-1, 3)
             for number, muscle in enumerate(muscles.muscles)
         }
+
+
+def contracted(face: SpringFace, pose: Pose, contraction: Contraction | None = None) -> Contracted:
+    """Return the muscles of a face in a pose; `contraction` is theirs, if it is known already."""
+    values = resolve_pose(face.controls, pose).values
+    jaw = JawPose(*(values.get(f"jaw_{n}", 0.0) for n in ("pitch", "yaw", "protrusion")))
+    points, aims = face.muscles.moved_with_jaw(face.mechanics.jaw, jaw)
+    way = contraction or Contraction(face.muscles)
+    return way(face.muscles.contractions(values), points=points, aims=aims)
 
 
 def _sphere() -> tuple[FloatArray, IntArray]:

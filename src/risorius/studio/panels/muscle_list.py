@@ -33,24 +33,8 @@ class MuscleList:
 
     def fill(self) -> None:
         """Show the muscles there are, if they have changed."""
-        work, page = self.panel.shop.document.work, self.panel.page
-        vector = work.project.method == "vector"
-        entries: list[tuple[str, str, tuple[str, ...]]] = []
-        if vector:
-            names = [muscle.name for muscle in work.vectors.muscles]
-            for name in names:
-                if not name.endswith("_r"):
-                    stem = name.removesuffix("_l")
-                    pair = tuple(n for n in (name, f"{stem}_r") if n in names)
-                    entries.append(("vector muscles", stem, pair))
-        elif work.project.method == "layered":
-            for muscle in work.muscle_map.muscles:
-                bodies = (f"{muscle.name}_l", f"{muscle.name}_r") if muscle.mirror else None
-                entries.append((f"layer {muscle.layer}", muscle.name, bodies or (muscle.name,)))
-        else:
-            stage = self.panel.shop.stage
-            bodies_shown = [m.name for m in stage.meshes if m.group == "muscles"] if stage else []
-            entries = [("spring muscles", name, (name,)) for name in bodies_shown]
+        page = self.panel.page
+        entries = self.panel.kept.entries()
         state = (
             tuple(entries), self.panel.shop.show.selected, frozenset(page.hidden),
             frozenset(self.panel.locked),
@@ -61,11 +45,11 @@ class MuscleList:
         self._frame.clear()
         with self._frame:
             title = ""
-            for layer, name, bodies in entries:
-                if layer != title:
-                    title = layer
-                    ui.label(layer).classes("st-head")
-                self._row(name, bodies)
+            for entry in entries:
+                if entry.group != title:
+                    title = entry.group
+                    ui.label(title).classes("st-head")
+                self._row(entry.name, entry.bodies)
             if not entries:
                 ui.label("No muscles to show.").classes("st-help")
 

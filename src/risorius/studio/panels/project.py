@@ -14,6 +14,7 @@ from risorius.errors import FormatError, RisoriusError
 from risorius.head.head import Head
 from risorius.project import PROFILES
 from risorius.studio.panel import Panel, group, heading
+from risorius.studio.panels.method import MethodToggle
 from risorius.studio.uploads import keep_upload
 from risorius.studio.work import work_of
 
@@ -52,9 +53,11 @@ class ProjectPanel(Panel):
             )
             self._builtin.props("flat dense no-caps").classes("st-chip")
         with group("Method"):
+            self._method = MethodToggle(self, "project-method")
             self._profile = ui.toggle(list(PROFILES), value="improved").props("dense no-caps")
             self._profile.on_value_change(self.page.safely(self._set_profile))
         with group("History"):
+            self._notice = ui.label().classes("st-warn").props("data-mark=history-notice")
             self._steps = ui.column().style("gap:0;width:100%")
         with group("File"):
             self._path = ui.label().classes("st-help").style("word-break:break-all")
@@ -69,8 +72,11 @@ class ProjectPanel(Panel):
         document = self.shop.document
         project = document.work.project
         self._head.set_text("built-in head" if project.head is None else project.head.name)
+        self._method.follow()
         self._profile.set_value(project.profile)
         self._path.set_text(str(document.keeper.path))
+        self._notice.set_text(document.notice)
+        self._notice.set_visibility(bool(document.notice))
         labels, place = document.history
         self._steps.clear()
         with self._steps:

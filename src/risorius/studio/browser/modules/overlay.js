@@ -15,6 +15,24 @@ const disc = (() => {
   return new THREE.CanvasTexture(canvas);
 })();
 
+// Round points of a size in pixels, before everything else.
+function cloud(places, size) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(
+    places.flatMap((p) => p.at), 3,
+  ));
+  geometry.setAttribute("color", new THREE.Float32BufferAttribute(
+    places.flatMap((p) => new THREE.Color(p.colour).toArray()), 3,
+  ));
+  const points = new THREE.Points(geometry, new THREE.PointsMaterial({
+    size, sizeAttenuation: false, map: disc, vertexColors: true, alphaTest: 0.4,
+    transparent: true, depthTest: false,
+  }));
+  points.renderOrder = 11;
+  points.frustumCulled = false;
+  return points;
+}
+
 export class Overlay {
   constructor(viewport) {
     this.viewport = viewport;
@@ -35,7 +53,7 @@ export class Overlay {
     this.tip = viewport.root.querySelector(".rv-tip");
   }
 
-  show({ handles = [], lines = [] }) {
+  show({ handles = [], lines = [], segments = [], dots = [] }) {
     for (const line of [...this.lines.children]) {
       this.lines.remove(line);
       line.geometry.dispose();
@@ -59,7 +77,24 @@ export class Overlay {
       tube.frustumCulled = false;
       this.lines.add(tube);
     }
+    for (const { points, colour } of segments) {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
+      const net = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({
+        color: new THREE.Color(colour), depthTest: false, transparent: true, opacity: 0.9,
+      }));
+      net.renderOrder = 10;
+      net.frustumCulled = false;
+      this.lines.add(net);
+    }
+    if (dots.length) this.lines.add(cloud(dots, 7));
     this.handles = handles;
+    // A handle that is being dragged stays under the pointer.
+    const held = this.viewport.pointer?.dragged, twin = held && handles.find((h) => h.id === held.id);
+    if (twin) {
+      twin.at = held.at;
+      this.viewport.pointer.dragged = twin;
+    }
     this.dots();
     this.viewport.touch();
   }
@@ -80,19 +115,7 @@ export class Overlay {
       this.points = null;
     }
     if (!this.handles.length) return;
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.Float32BufferAttribute(
-      this.handles.flatMap((h) => h.at), 3,
-    ));
-    geometry.setAttribute("color", new THREE.Float32BufferAttribute(
-      this.handles.flatMap((h) => new THREE.Color(h.colour).toArray()), 3,
-    ));
-    this.points = new THREE.Points(geometry, new THREE.PointsMaterial({
-      size: 11, sizeAttenuation: false, map: disc, vertexColors: true, alphaTest: 0.4,
-      transparent: true, depthTest: false,
-    }));
-    this.points.renderOrder = 11;
-    this.points.frustumCulled = false;
+    this.points = cloud(this.handles, 11);
     this.group.add(this.points);
     this.facing();
   }
