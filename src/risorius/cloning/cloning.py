@@ -11,6 +11,7 @@ import numpy as np
 
 from risorius._check import BoolArray, FloatArray
 from risorius.cloning.correspondence import Correspondence, correspond
+from risorius.cloning.folds import FoldRelief
 from risorius.cloning.landmark_pairs import pair_landmarks
 from risorius.cloning.lid_contact import EyeClearance, LidContact
 from risorius.cloning.lip_contact import LipContact
@@ -132,6 +133,10 @@ class Cloning:
             made = np.zeros((len(ours), self.target.mesh.vertex_count, 3))
             for shape, moved in enumerate(ours):
                 made[shape] = self.skin.carry(moved)
+            if self.parameters.fold_relief:
+                relief = FoldRelief(self.source, self.target, self.skin.mapping)
+                for moved, clone in zip(ours, made):
+                    clone[:] = relief.relieve(moved, clone)
         with clock.stage("contact"):
             still = ~made.any(axis=2)
             self._restore_lips(ours, made)

@@ -30,6 +30,8 @@ class CloneParameters:
         target, 0 to 1; 0 keeps one scale and turn for the whole head.
     curved : bool
         Interpolate displacements between source vertices by a curved patch, not by planes.
+    fold_relief : bool
+        Smooth motion where the target's skin folds more than the source's.
     lip_contact, lid_contact, parts : bool
         Restore the seam of the lips; close the lids as far as the source's, outside the
         eyeball; move teeth, tongue, eyes and lashes.
@@ -49,6 +51,7 @@ class CloneParameters:
     form: Form = "delta"
     local_scale: float = 0.0
     curved: bool = True
+    fold_relief: bool = True
     lip_contact: bool = True
     lid_contact: bool = True
     parts: bool = True
@@ -76,4 +79,6 @@ def clone_parameters(profile: Profile = "improved") -> CloneParameters:
     one_of("profile", profile, _PROFILES)
     if profile == "improved":
         return CloneParameters()
-    return CloneParameters(profile="faithful", curved=False, lip_contact=False, lid_contact=False)
+    return CloneParameters(
+        profile="faithful", curved=False, fold_relief=False, lip_contact=False, lid_contact=False
+    )
