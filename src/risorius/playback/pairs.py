@@ -19,6 +19,7 @@ from risorius.controls.pair_names import pair_name
 from risorius.controls.presets import mirrored
 from risorius.rig.face import Face
 from risorius.rig.rig import MorphTarget, Rig
+from risorius.rig.sides import other_side
 
 __all__ = ["CorrectivePair", "find_pairs", "with_pairs"]
 
@@ -87,7 +88,8 @@ def find_pairs(
     Notes
     -----
     Passed over: pairs whose shapes have next to no motion in common (unless one shows only together
-    with others, as mouthClose does), and contrary ones, such as a gaze to both sides. Of a pair and
+    with others, as mouthClose does), contrary ones, such as a gaze to both sides, and the two
+    sides of one shape, whose targets add up as they are baked. Of a pair and
     its mirror image one is tried for both; pairs with most in common are tried first, until the
     rest can no longer be among the best. Cost: one evaluation of the face per pair tried, four to
     six more for those that are kept.
@@ -142,6 +144,8 @@ def _candidates(
     seen: set[frozenset[str]] = set()
     for a, b in combinations(poses, 2):
         if frozenset((a, b)) in seen or _contrary(poses[a], poses[b]):
+            continue
+        if mirror.get(a) == b and other_side(poses[a], face.controls) is not None:
             continue
         common = float(np.sqrt((np.minimum(sizes[a], sizes[b]) ** 2).mean()))
         common = float("inf") if {a, b} & still else common

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from risorius.head.head import Head
 from risorius.landmarks.landmark_set import Landmark, LandmarkSpec
 from risorius.rig.face import Face, ManyPoses
 from risorius.rig.rig import MorphTarget, Rig
+from risorius.rig.sides import added, fair_share, other_side
 
 __all__ = ["bake", "displacement", "empty_rig"]
 
@@ -21,6 +23,7 @@ _STILL = 1e-4
 _SIDE_BY_SIDE = 32
 
 Progress = Callable[[int, int, str], None]
+Key = frozenset[tuple[str, float]]
 
 
 def bake(
@@ -31,7 +34,7 @@ def bake(
     upon: Mapping[str, Pose] | None = None,
     progress: Progress | None = None,
 ) -> Rig:
-    """Evaluate `face` in every pose and collect the displacements.
+    """Evaluate `face` in every pose and collect the displacements; left and right add up.
 
     Parameters
     ----------
@@ -51,17 +54,21 @@ def bake(
         In the input's frame, unit and vertex order; its neutral is the input bit for bit.
     """
     head = face.head
-    targets: list[MorphTarget] = []
-    for name, pose, moved in _displaced(face, poses, upon or {}, progress):
+    targets: dict[str, MorphTarget] = {}
+    for name, moved in _displaced(face, poses, upon or {}, progress):
         moved[(moved * moved).sum(axis=1) <= _STILL * _STILL] = 0.0
-        targets.append(MorphTarget.from_dense(name, head.frame.vectors_to_input(moved), pose=pose))
+        deltas = head.frame.vectors_to_input(moved)
+        targets[name] = MorphTarget.from_dense(name, deltas, pose=poses[name])
     return empty_rig(head).with_targets(
-        targets, controls=face.controls, left_out=dict(left_out or {})
+        [targets[name] for name in poses], controls=face.controls, left_out=dict(left_out or {})
     )
 
 
 def displacement(face: Face, pose: Pose, *, upon: Pose | None = None) -> FloatArray:
     """Return what a shape adds to a face (n, 3) [mm, canonical frame].
+
+    A shape of one side carries its share of what both sides make together (`fair_share`): then
+    left and right add up to the face's own pose.
 
     Parameters
     ----------
@@ -71,13 +78,30 @@ def displacement(face: Face, pose: Pose, *, upon: Pose | None = None) -> FloatAr
         Pose that the shape is made for: the answer is what it changes there. Lips that close on an
         open jaw would be pushed apart again by contact on a closed one.
     """
-    if upon is None:
-        return face.displace(pose)
-    return face.displace(_both(upon, pose)) - face.displace(upon)
+    shape = _Shape.of(face, pose, upon)
+    return shape.displacement([face.displace(needed) for needed in shape.needed])
 
 
-def _both(upon: Pose, pose: Pose) -> Pose:
-    return {name: upon.get(name, 0.0) + pose.get(name, 0.0) for name in {**upon, **pose}}
+@dataclass(frozen=True)
+class _Shape:
+    """What has to be simulated for one shape: itself, and what it is compared with."""
+
+    needed: tuple[Pose, ...]
+    sided: bool
+
+    @staticmethod
+    def of(face: Face, pose: Pose, upon: Pose | None) -> _Shape:
+        if upon is not None:
+            return _Shape((added(upon, pose), upon), sided=False)
+        other = other_side(pose, face.controls)
+        if other is None:
+            return _Shape((pose,), sided=False)
+        return _Shape((pose, other, added(pose, other)), sided=True)
+
+    def displacement(self, found: Sequence[FloatArray]) -> FloatArray:
+        if self.sided:
+            return fair_share(*found)
+        return found[0] - found[1] if len(found) == 2 else found[0].copy()
 
 
 def _displaced(
@@ -85,24 +109,46 @@ def _displaced(
     poses: Mapping[str, Pose],
     upon: Mapping[str, Pose],
     progress: Progress | None,
-) -> Iterator[tuple[str, Pose, FloatArray]]:
-    """Yield name, pose and displacement (n, 3) [mm] of every target, in order."""
-    names = list(poses)
+) -> Iterator[tuple[str, FloatArray]]:
+    """Yield name and displacement (n, 3) [mm] of every target; sides follow one another."""
+    shapes = {name: _Shape.of(face, pose, upon.get(name)) for name, pose in poses.items()}
     step = _SIDE_BY_SIDE if isinstance(face, ManyPoses) else 1
-    for first in range(0, len(names), step):
-        part = names[first : first + step]
+    done = 0
+    for names in _batches(shapes, step):
         if progress is not None:
-            progress(first, len(names), part[0])
-        if not isinstance(face, ManyPoses):
-            for name in part:
-                yield name, poses[name], displacement(face, poses[name], upon=upon.get(name))
-            continue
-        above = [name for name in part if name in upon]
-        wanted = [_both(upon.get(name, {}), poses[name]) for name in part]
-        found = face.displace_all([*wanted, *(upon[name] for name in above)])
-        beneath = dict(zip(above, found[len(part) :]))
-        for name, moved in zip(part, found):
-            yield name, poses[name], moved - beneath[name] if name in beneath else moved
+            progress(done, len(poses), names[0])
+        wanted = {_key(pose): pose for name in names for pose in shapes[name].needed}
+        if isinstance(face, ManyPoses):
+            found = face.displace_all(list(wanted.values()))
+        else:
+            found = [face.displace(pose) for pose in wanted.values()]
+        known = dict(zip(wanted, found, strict=True))
+        for name in names:
+            shape = shapes[name]
+            yield name, shape.displacement([known[_key(pose)] for pose in shape.needed])
+        done += len(names)
+
+
+def _batches(shapes: Mapping[str, _Shape], step: int) -> Iterator[list[str]]:
+    """Yield names whose simulations are done at once, both sides of a shape always together."""
+    groups: dict[frozenset[Key], list[str]] = {}
+    for name, shape in shapes.items():
+        # Left and right need the same three poses.
+        groups.setdefault(frozenset(map(_key, shape.needed)), []).append(name)
+    batch: list[str] = []
+    needed = 0
+    for group, names in groups.items():
+        if batch and needed + len(group) > step:
+            yield batch
+            batch, needed = [], 0
+        batch.extend(names)
+        needed += len(group)
+    if batch:
+        yield batch
+
+
+def _key(pose: Pose) -> Key:
+    return frozenset(pose.items())
 
 
 def empty_rig(head: Head) -> Rig:
