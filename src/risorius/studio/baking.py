@@ -34,4 +34,4 @@ def bake_subject(subject: Subject, sets: Sequence[str], job: Job) -> Rig:
         fitted = subject.presets.fit(pose, face.controls).pose
         poses[name if name not in poses else f"my {name}"] = fitted
     job.step("bake")
-    return bake(face, poses, left_out=shapes.left_out, progress=job.tick)
+    return bake(face, poses, left_out=shapes.left_out, upon=shapes.upon, progress=job.tick)
