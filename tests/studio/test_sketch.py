@@ -21,7 +21,6 @@ from risorius.studio.jobs import Job
 from risorius.studio.places import Place, place_of
 from risorius.studio.scene import Stage, stage_of
 from risorius.studio.subject import build_subject
-from risorius.studio.tuner import Tuner
 from risorius.studio.work import Work, work_of
 
 LINE = np.array([[50.0, -25.0, 68.0], [41.0, -46.0, 77.0], [29.0, -64.0, 85.0]])
@@ -133,25 +132,6 @@ def test_no_message_of_the_pointer_fails_otherwise_than_by_refusal(message: obje
     except FormatError:
         return
     assert np.isfinite(place.position).all()
-
-
-@pytest.mark.parametrize(("method", "what"), [("layered", "pose"), ("vector", "muscles")])
-def test_nine_faces_differ_and_the_best_is_taken(method: str, what: str) -> None:
-    stage = _stage(method)
-    tuner = Tuner.begin(stage.subject, "joy", what=what, seed=3)
-    shown = tuner.faces(stage)
-    assert len(shown) == 9
-    assert any(np.abs(shown[0]["skin"] - each["skin"]).max() > 0.5 for each in shown[1:])
-    best = tuner.session.accept(4)
-    vectors = tuner.vectors(best)
-    assert (vectors is not None) == (what == "muscles")
-    tuner.next((4,))
-    assert tuner.session.generation.number == 1
-
-
-def test_tuning_of_what_does_not_exist_is_refused() -> None:
-    with pytest.raises(ParameterError, match="there is no expression 'glee'"):
-        Tuner.begin(_stage().subject, "glee", what="pose")
 
 
 def test_a_changed_muscle_keeps_everything_else_of_the_subject() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import asyncio
 from typing import Any
 
 from nicegui import ui
@@ -11,9 +11,11 @@ from risorius.controls.presets import EMOTIONS
 from risorius.errors import ParameterError
 from risorius.io.json_fields import Fields
 from risorius.studio import frames
+from risorius.studio.jobs import Job
 from risorius.studio.panel import Panel, group, heading
+from risorius.studio.panels.progress import Progress
 from risorius.studio.stated import Message
-from risorius.studio.tuner import Tuner
+from risorius.studio.tuner import Tuner, muscle_of
 
 __all__ = ["TunePanel"]
 
@@ -31,26 +33,29 @@ class TunePanel(Panel):
         """Make the elements."""
         self.tuner: Tuner | None = None
         self.picks: list[int] = []
+        self._settled: dict[str, str] = {}
         heading("Tune by choosing", "Nine faces; click up to three you like, the best first.")
         with group("What"):
             self._expression = ui.select(list(EMOTIONS), value="joy").props("dense")
             self._expression.style("width:100%").props("data-mark=tune-expression")
             self._what = ui.toggle(
                 {"pose": "strength of muscles", "muscles": "muscles themselves"}, value="pose"
-            ).props("dense no-caps flat size=sm")
+            ).props("dense no-caps flat size=sm data-mark=tune-what")
             with ui.row().style("gap:6px"):
                 self._button("Begin", "play_arrow", self._begin)
                 self._button("Stop", "close", self._end)
+        self.progress = Progress(self.page)
         with group("Generation") as self._group:
             self._state = ui.label().props("data-mark=generation")
             with ui.row().style("gap:6px"):
                 self._button("Next faces", "navigate_next", self._next)
+                self._button("Others", "casino", self._others)
                 self._button("Back", "navigate_before", self._back)
                 self._button("Accept", "check", self._accept)
-            ui.label("With none chosen, other faces are shown. Keys 1 to 9 choose.").classes(
-                "st-help"
-            )
-        with group("Locked parameters") as self._locks:
+            ui.label(
+                "Others: nine more from the same choice. Back: the nine before. Keys 1 to 9 choose."
+            ).classes("st-help")
+        with group("Locked: stays as it is") as self._locks:
             self._list = ui.column().style("gap:0;width:100%")
         self._group.set_visibility(False)
         self._locks.set_visibility(False)
@@ -73,29 +78,33 @@ class TunePanel(Panel):
     # -- actions ----------------------------------------------------------------------------
 
     async def _begin(self) -> None:
-        expression = str(self._expression.value)
-        self.page.busy.set_text("making nine faces …")
-        self.page.busy.set_visibility(True)
-        try:
-            self.tuner = await self.shop.work(
-                lambda: Tuner.begin(self.subject, expression, what=str(self._what.value))
-            )
-        finally:
-            self.page.busy.set_visibility(False)
-        await self._show()
+        expression, what, subject = str(self._expression.value), str(self._what.value), self.subject
+        locked = [name for name, by in self._settled.items() if by != expression]
+
+        def work(job: Job) -> Tuner:
+            return Tuner.begin(subject, expression, job, what=what, locked=locked)
+
+        self._end()
+        tuner = await self.progress.run("nine faces", work)
+        if tuner is not None and self.page.active is self:
+            self.tuner = tuner
+            await self._show()
 
     async def _show(self) -> None:
         tuner, stage = self.tuner, self.shop.stage
         if tuner is None or stage is None:
             return
-        shown = await self.shop.work(tuner.faces, stage)
+        shown = await asyncio.to_thread(tuner.faces, stage)
+        if self.tuner is not tuner:
+            return
         rest = {each.name: each.mesh.positions for each in stage.meshes}
         self.picks = []
-        self.shop.hub.put(
-            frames.candidates(
-                rest, shown, epoch=self.shop.epoch, labels=[str(k + 1) for k in range(9)]
-            )
+        message = frames.candidates(
+            rest, shown, epoch=self.shop.epoch, labels=[str(k + 1) for k in range(9)]
         )
+        stream = self.shop.hub.of(self.page.client.id)
+        if stream is not None:
+            stream.put(message)
         self.page.view.set(layout="nine")
         self.page.view.choose([])
         self._group.set_visibility(True)
@@ -112,7 +121,7 @@ class TunePanel(Panel):
         self._state.set_text(f"{tuner.expression}, generation {number}; chosen: {chosen}")
         self.page.say(
             "Click up to three faces, the best first, then <b>Next faces</b>. "
-            "<b>Accept</b> takes the best."
+            "<b>Accept</b> takes the best; <b>drag</b> turns all nine."
         )
 
     def _fill_locks(self) -> None:
@@ -120,17 +129,32 @@ class TunePanel(Panel):
         self._list.clear()
         if tuner is None:
             return
-        locked = tuner.session.locked
+        locked, stems = set(tuner.session.locked), dict[str, list[str]]()
+        for name in tuner.session.genome.names:
+            stems.setdefault(name.split(".")[0], []).append(name)
         with self._list:
-            for name in tuner.session.genome.names:
-                box = ui.checkbox(name.replace("_", " "), value=name in locked)
-                box.props("dense size=xs").on_value_change(
-                    self.page.safely(lambda e, n=name: self._lock(n, bool(e.value)))
-                )
+            for stem, names in stems.items():
+                if len(names) == 1:
+                    self._box(names[0].replace("_", " "), names, locked)
+                    continue
+                by = self._settled.get(muscle_of(stem), tuner.expression)
+                words = stem.replace("_", " ")
+                self._box(words if by == tuner.expression else f"{words} ({by})", names, locked)
+                with ui.expansion("number by number").props("dense").classes("st-help"):
+                    for name in names:
+                        self._box(name.split(".")[1].replace("_", " "), [name], locked)
 
-    def _lock(self, name: str, locked: bool) -> None:
+    def _box(self, words: str, names: list[str], locked: set[str]) -> None:
+        box = ui.checkbox(words, value=locked.issuperset(names))
+        box.props("dense size=xs").on_value_change(
+            self.page.safely(lambda e: self._lock(names, bool(e.value)))
+        )
+
+    def _lock(self, names: list[str], locked: bool) -> None:
         session = self._require().session
-        (session.lock if locked else session.unlock)([name])
+        (session.lock if locked else session.unlock)(names)
+        if len(names) > 1:
+            self._fill_locks()
 
     def _require(self) -> Tuner:
         if self.tuner is None:
@@ -139,7 +163,12 @@ class TunePanel(Panel):
 
     async def _next(self) -> None:
         tuner = self._require()
-        await self.shop.work(tuner.next, tuple(self.picks))
+        await asyncio.to_thread(tuner.next, tuple(self.picks))
+        await self._show()
+
+    async def _others(self) -> None:
+        tuner = self._require()
+        await asyncio.to_thread(tuner.next, ())
         await self._show()
 
     async def _back(self) -> None:
@@ -147,19 +176,15 @@ class TunePanel(Panel):
         await self._show()
 
     def _accept(self) -> None:
-        tuner, work = self._require(), self.shop.document.work
-        values = tuner.session.accept(self.picks[0] if self.picks else None)
-        pose = {name: float(value) for name, value in tuner.pose(values).items()}
-        vectors = tuner.vectors(values)
+        tuner = self._require()
+        changed = tuner.accepted(self.shop.document.work, self.picks[0] if self.picks else None)
+        if tuner.what == "muscles":
+            free = set(tuner.session.genome.names).difference(tuner.session.locked)
+            self._settled |= {muscle_of(name): tuner.expression for name in free}
         self._end()
-        if vectors is not None:
-            changed = replace(work, vectors=vectors, pose=pose)
-        else:
-            name = tuner.expression if tuner.expression in work.poses else f"my {tuner.expression}"
-            project = replace(work.project, poses={**work.project.poses, name: pose})
-            changed = replace(work, project=project, pose=pose)
         self.shop.change(f"Tune {tuner.expression}", changed)
-        self.page.tell(f"{tuner.expression} is kept")
+        what = "its muscles are" if tuner.what == "muscles" else "it is"
+        self.page.tell(f"{tuner.expression}: {what} kept")
 
     def _end(self) -> None:
         self.tuner = None
