@@ -138,8 +138,8 @@ class Page:
         with self.client:
             if what == "problem":
                 self.refuse(self.shop.problem)
-            if what == "face":
-                self.busy.set_visibility(False)
+            if what in ("building", "face", "problem", "draft"):
+                self.busy.set_visibility(what == "building")
             if what == "show":
                 show = self.shop.show
                 self.view.set(selected=show.selected, painted=show.heat != "none")

@@ -79,7 +79,10 @@ class Workshop:
         return await loop.run_in_executor(self._worker, lambda: function(*arguments))
 
     def tell(self, what: str) -> None:
-        """Tell all pages what changed: document, face, pose, show, draft, problem, bake, stream."""
+        """Tell all pages what changed.
+
+        One of document, face, pose, show, draft, building, problem, bake and stream.
+        """
         for listener in tuple(self.listeners):
             listener(what)
 
@@ -228,6 +231,8 @@ class Workshop:
 
     async def _build(self, work: Work) -> None:
         drafted = work is self.draft
+        if self.subject is not None and work.project != self.subject.work.project:
+            self.tell("building")
         try:
             stage = await self.work(_built, work, self.subject, self.stage)
         except RisoriusError as error:

@@ -27,6 +27,7 @@ from risorius.springmuscle.editing import (
 )
 from risorius.springmuscle.fit import Ground
 from risorius.springmuscle.fit_parameters import FitParameters
+from risorius.springmuscle.grid import lay_out
 from risorius.springmuscle.recipe import MuscleOutline, OutlinePoint, OutlineSettings
 from risorius.studio.drawing.craft import Choice, Craft, Entry, Handle, Number, Tool, Traits
 from risorius.studio.drawing.sketch import Sketch
@@ -234,6 +235,8 @@ class SpringCraft(Craft):
         return numbers if isinstance(skin, Mapping) else {"skin": skin, **numbers}
 
     def _with(self, outline: MuscleOutline) -> Work:
+        """Return the work with an outline that can be laid on this head."""
+        lay_out(outline.sided(1) if outline.mirror else outline, self._ground.surface)
         return replace(self.work, recipe=with_outline(self.work.recipe, outline))
 
 

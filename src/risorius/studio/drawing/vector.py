@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
+from typing import Any, cast
 
 from risorius.errors import ParameterError
 from risorius.studio.drawing.craft import Craft, Entry, Handle, Number, Tool, Traits
@@ -49,10 +50,11 @@ class VectorCraft(Craft):
     def traits(self, name: str) -> Traits:
         """Return what can be changed."""
         muscle = _found(self.work.vectors, name)
+        own = {entry.name for entry in fields(cast(Any, muscle))} if muscle is not None else ()
         numbers = [
-            Number(key, low, high, float(value))
+            Number(key, low, high, float(getattr(muscle, key)))
             for key, (low, high) in _NUMBERS.items()
-            if isinstance(value := getattr(muscle, key, None), float | int)
+            if key in own
         ]
         words = "Drag head and tail; 'influence' below paints the zone."
         return Traits(name, tuple(numbers), words=words if muscle is not None else "")

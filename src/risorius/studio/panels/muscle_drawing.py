@@ -99,9 +99,10 @@ class MuscleDrawing:
         if self.drawn is not None:
             self.shop.try_out(self.drawn.work)
         elif before is not None:
-            self._forget_draft()
+            self.forget_draft()
 
-    def _forget_draft(self) -> None:
+    def forget_draft(self) -> None:
+        """Go back to what is kept."""
         self.shop.draft_problem = ""
         if self.shop.draft is not None:
             self.shop.try_out(self.shop.document.work)
@@ -143,7 +144,7 @@ class MuscleDrawing:
 
     def cancel(self) -> None:
         """Stop drawing."""
-        self._forget_draft()
+        self.forget_draft()
         self.sketch = self.drawn = None
         self._slider.take(())
         self._ends.set_visibility(False)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from nicegui import ui
 from nicegui.events import GenericEventArguments, ValueChangeEventArguments
 
+from risorius.errors import ParameterError, RisoriusError
 from risorius.io.json_fields import Fields, finite_number
 from risorius.studio.drawing.craft import Choice, Number, Traits
 from risorius.studio.panels.contraction import ContractionSlider
@@ -145,9 +147,23 @@ class MuscleEditor:
 
     # -- changes ----------------------------------------------------------------------------
 
+    @contextmanager
+    def _or_as_before(self) -> Generator[None]:
+        """Show what is still there, where a change is refused."""
+        try:
+            self.panel.require_unlocked(self._name)
+            yield
+        except RisoriusError:
+            self._shown = None
+            self.panel.drawing.forget_draft()
+            self.fill()
+            self.panel.feedback.fill()
+            self.panel.show_overlay()
+            raise
+
     def _change(self, what: str, make: Callable[[], Work]) -> None:
-        self.panel.require_unlocked(self._name)
-        self.shop.change(f"{title_of(self._name)}: {title_of(what)}", make())
+        with self._or_as_before():
+            self.shop.change(f"{title_of(self._name)}: {title_of(what)}", make())
 
     def _set_mirror(self, traits: Traits, mirror: bool) -> None:
         if mirror != traits.mirror:
@@ -159,8 +175,8 @@ class MuscleEditor:
 
     def _exchange(self, what: str, make: Callable[[], tuple[Work, str]]) -> None:
         """Make a change after which the muscle's body is called otherwise."""
-        self.panel.require_unlocked(self._name)
-        work, name = make()
+        with self._or_as_before():
+            work, name = make()
         label = f"{title_of(self._name)}: {what}"
         self.shop.present(selected="")
         self.shop.change(label, work)
@@ -193,10 +209,18 @@ class MuscleEditor:
             return
         place = place_of(message, stage)
         if event == "dragging":
-            self.panel.require_unlocked(name)
-            self.shop.try_out(craft.moved(name, key, place))
+            self._try(name, lambda: craft.moved(name, key, place))
         else:
             self._change("move point", lambda: craft.moved(name, key, place))
+
+    def _try(self, name: str, make: Callable[[], Work]) -> None:
+        """Show a change while it is dragged; what is refused is said and waits for the drop."""
+        self.panel.require_unlocked(name)
+        try:
+            self.shop.try_out(make())
+        except ParameterError as error:
+            self.shop.draft_problem = str(error)
+            self.shop.tell("draft")
 
 
 def _slug(text: str) -> str:
