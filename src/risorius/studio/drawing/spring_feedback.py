@@ -16,7 +16,6 @@ import numpy.typing as npt
 
 from risorius._check import FloatArray
 from risorius.controls.control import Pose
-from risorius.spatial.closest import closest_points
 from risorius.springmuscle.binding import bind_muscle
 from risorius.springmuscle.face import SpringFace
 from risorius.springmuscle.fit import Ground
@@ -39,7 +38,7 @@ _SHALLOW, _DEEP = "#ff4d4d", "#4d9dff"
 _INFLUENCED, _TINT = np.array([70.0, 190.0, 105.0]), 0.7
 _ABOVE = 0.6
 # Errors below this are none [mm at the reference width]; so few vertices move nothing smoothly.
-_VISIBLE, _FEWEST = 0.3, 12
+_VISIBLE, _FEWEST, _FACING = 0.3, 12, 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,11 +182,13 @@ def _poking(face: SpringFace, name: str, ground: Ground) -> float:
     muscles, surface = face.muscles, ground.surface
     owner = np.array([each.name == name for each in muscles.muscles])
     own = owner[muscles.segment_muscle]
-    tops = muscles.centres[own] + muscles.frames[own][:, :, 2] * muscles.half_axes[own][:, 2:]
-    near = closest_points(surface.scene, tops)
-    normals = surface.face_normals[near.face]
-    outside = np.einsum("sk,sk->s", tops - near.positions, normals)
-    return float(outside.max(initial=0.0))
+    normals = muscles.frames[own][:, :, 2]
+    tops = muscles.centres[own] + normals * muscles.half_axes[own][:, 2:]
+    hits = surface.scene.cast(tops, normals, both_directions=True)
+    # Skin that looks elsewhere is a rim or the wall of a fold, not what lies above.
+    facing = np.einsum("sk,sk->s", surface.face_normals[np.maximum(hits.face, 0)], normals)
+    above = hits.hit & (facing > _FACING)
+    return float(np.where(above, -np.nan_to_num(hits.distance), 0.0).max(initial=0.0))
 
 
 def _drawn_lines(view: MuscleView, ground: Ground) -> list[dict[str, Any]]:
