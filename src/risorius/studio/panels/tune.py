@@ -94,7 +94,12 @@ class TunePanel(Panel):
         tuner, stage = self.tuner, self.shop.stage
         if tuner is None or stage is None:
             return
-        shown = await asyncio.to_thread(tuner.faces, stage)
+        self.page.busy.set_text("making nine faces …")
+        self.page.busy.set_visibility(True)
+        try:
+            shown = await asyncio.to_thread(tuner.faces, stage)
+        finally:
+            self.page.busy.set_visibility(False)
         if self.tuner is not tuner:
             return
         rest = {each.name: each.mesh.positions for each in stage.meshes}
@@ -140,9 +145,15 @@ class TunePanel(Panel):
                 by = self._settled.get(muscle_of(stem), tuner.expression)
                 words = stem.replace("_", " ")
                 self._box(words if by == tuner.expression else f"{words} ({by})", names, locked)
-                with ui.expansion("number by number").props("dense").classes("st-help"):
-                    for name in names:
-                        self._box(name.split(".")[1].replace("_", " "), [name], locked)
+            if len(stems) < len(tuner.session.genome):
+                self._fill_numbers(stems, locked)
+
+    def _fill_numbers(self, stems: dict[str, list[str]], locked: set[str]) -> None:
+        with ui.expansion("number by number").props("dense").classes("st-help"):
+            for stem, names in stems.items():
+                ui.label(stem.replace("_", " ")).classes("st-head")
+                for name in names:
+                    self._box(name.split(".")[-1].replace("_", " "), [name], locked)
 
     def _box(self, words: str, names: list[str], locked: set[str]) -> None:
         box = ui.checkbox(words, value=locked.issuperset(names))

@@ -3,6 +3,7 @@ import { OrbitControls, THREE } from "nicegui-scene";
 
 const BACKGROUND = 0x1b1d20, LINE = 0x2c3036;
 const ANGLE = 24, NARROW = 0.85; // degrees; width over height
+const NEAR = 0.76; // nine small faces are seen from nearer
 const PRESETS = {
   front: [0, 0.02, 1], three_quarter: [0.62, 0.08, 0.78], left: [1, 0.02, 0.02],
   right: [-1, 0.02, 0.02], mouth: [0, 0, 1], eyes: [0, 0, 1],
@@ -109,7 +110,7 @@ export class Views {
     const aspect = w / h, half = Math.tan((ANGLE * Math.PI) / 360);
     this.camera.aspect = aspect;
     // A narrow view shows as much across as a square one.
-    const fit = half * Math.max(1, NARROW / aspect);
+    const fit = half * Math.max(1, NARROW / aspect) * (this.nine() ? NEAR : 1);
     this.camera.fov = (Math.atan(fit) * 360) / Math.PI;
     this.camera.updateProjectionMatrix();
   }
