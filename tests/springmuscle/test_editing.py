@@ -9,8 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.template import builtin_head
 from risorius.errors import ParameterError
+from risorius.springmuscle.bones import builtin_bones
 from risorius.springmuscle.drawing import drawn_outline, outline_point
 from risorius.springmuscle.editing import (
     moved_point,
@@ -23,10 +25,12 @@ from risorius.springmuscle.editing import (
     without_point,
 )
 from risorius.springmuscle.face import SpringFace
+from risorius.springmuscle.fit import Ground, fit_muscle
 from risorius.springmuscle.measure import FaceMeasure
 from risorius.springmuscle.recipe import OutlineRecipe
 from risorius.springmuscle.recipe_file import default_recipe, parse_recipe, recipe_to_json
 from risorius.springmuscle.redrawing import redrawn
+from tests.real.heads import REAL_HEADS, real_head
 from tests.springmuscle.faces import builtin_mechanics
 from tests.springmuscle.skins import builtin_ground
 
@@ -162,6 +166,19 @@ def test_a_drawn_muscle_lifts_the_mouth_corner_of_its_side(face: SpringFace) -> 
     left, right = (moved[skin][after.head.skin_vertex(name)] for name in ("8.3", "8.4"))
     assert left[1] > 1.5
     assert np.linalg.norm(right) < 0.2 * np.linalg.norm(left)
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("name", REAL_HEADS)
+def test_what_was_drawn_on_the_built_in_head_fits_real_heads(name: str) -> None:
+    mechanics = Mechanics.build(real_head(name))
+    ground = Ground.build(mechanics, builtin_bones(mechanics))
+    muscle = fit_muscle(smiler().sided(1), ground)
+    assert muscle.report.inside >= 0.95 and muscle.report.covered == 1.0
+    marks, size = ground.surface.measure.landmarks, ground.surface.measure.width
+    start, end = muscle.grid[0].mean(axis=0), muscle.grid[-1].mean(axis=0)
+    assert np.linalg.norm(end - marks["8.3"]) < 0.2 * size, "it ends at the mouth corner"
+    assert np.linalg.norm(start - marks["3.7"]) < 0.6 * size, "and begins below the eye"
 
 
 def test_a_muscle_of_one_side_moves_that_side_only(face: SpringFace) -> None:

@@ -111,9 +111,10 @@ def findings(view: MuscleView, face: SpringFace, name: str) -> list[str]:
         if count:
             found.append(f"{_cells(count)} {what}, by {error.max():.1f} mm at worst: {way}.")
     if report.missed:
+        points = "1 point finds" if report.missed == 1 else f"{report.missed} points find"
         found.append(
-            f"{report.missed} points found no skin above them and keep their place: move the "
-            "outline away from the edge."
+            f"{points} no skin above or too far away, and stays where it was drawn: move the "
+            "outline away from folds and edges."
         )
     if report.covered < 0.9:
         found.append(
