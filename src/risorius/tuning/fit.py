@@ -14,13 +14,13 @@ from risorius.tuning.candidates import Candidates, Gallery
 __all__ = ["ShapeFit", "fit_shape"]
 
 # Differences are taken over this share of a range; contact and folds make smaller ones noisy.
-_STEP = 0.05
+_STEP = 0.03
 # A parameter at the end of its range costs as much as this share of the first error.
 _HOLD = 0.05
 # Ways to go along a step at once; the best counts.
 _WAYS = np.array([1.0, 0.6, 0.3, 0.1])
 # Gain of an iteration below which it ends.
-_GAIN = 2e-3
+_GAIN = 5e-3
 
 Progress = Callable[[int, int, str], None]
 
