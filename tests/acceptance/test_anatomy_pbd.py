@@ -262,7 +262,8 @@ def test_18_thicker_fat_makes_the_cheek_of_joy_come_farther_forward() -> None:
     face = improved()
     book = default_presets()
     joy = book.fit(book.emotions["joy"], face.controls).pose
-    thick = replace(face.correctives, depth=2.0 * face.correctives.depth)
+    tissue = face.correctives.swelling
+    thick = replace(face.correctives, swelling=replace(tissue, depth=2.0 * tissue.depth))
     cheek = np.linalg.norm(HEAD.skin.mesh.positions - HEAD.landmarks.position("5.3"), axis=1) < 20.0
     assert cheek.sum() > 20
     forward = [

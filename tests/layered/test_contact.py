@@ -73,7 +73,7 @@ def test_shrinking_skin_swells_and_stretching_skin_thins() -> None:
     out = {}
     for sign in (-1.0, 1.0):
         tangent = offset - (offset @ normal)[:, None] * normal
-        moved = correctives._swelling(correctives.rest + sign * 0.25 * near * tangent)
+        moved = correctives.swelling.out(correctives.rest + sign * 0.25 * near * tangent)
         out[sign] = float(moved[middle] @ normal)
     assert out[-1.0] > 0.5
     assert out[1.0] < -0.3

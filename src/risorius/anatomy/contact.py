@@ -19,13 +19,15 @@ from risorius.anatomy.outwards import unit
 from risorius.anatomy.radial_surface import RadialSurface
 from risorius.anatomy.skin import Skin
 from risorius.anatomy.skull_fit import MIRROR
+from risorius.anatomy.unfolding import Unfolding
 from risorius.head.head import Head
+from risorius.mesh.connectivity import edges
 from risorius.spatial.hull import convex_hull
 
 __all__ = ["Contact"]
 
 # Lips and cheeks over the teeth keep this share of their thickness, up to so thick [mm].
-_LEFT, _THICKEST = 0.5, 10.0
+_LEFT, _THICKEST = 0.35, 10.0
 # Skin that was farther from the teeth keeps at least this distance [mm].
 _CLEAR = 0.3
 # Skin within this distance of the mouth's middle may meet teeth [mm].
@@ -49,13 +51,15 @@ class _Arch:
     offsets: FloatArray
     push: FloatArray
     least: FloatArray
+    middle_least: FloatArray
     box: FloatArray
 
-    def shortfall(self, points: FloatArray) -> FloatArray:
-        """Return how far (q, 3) points must move to be clear of the hull."""
+    def shortfall(self, points: FloatArray, *, middles: bool = False) -> FloatArray:
+        """Return how far (q, 3) points, or middles of sides, must move to be clear of the hull."""
         result = np.empty_like(points)
+        least = self.middle_least if middles else self.least
         hull_shortfall(
-            points, self.planes, self.offsets, self.push, self.least, self.box, _DEEPEST, result
+            points, self.planes, self.offsets, self.push, least, self.box, _DEEPEST, result
         )
         return result
 
@@ -83,12 +87,15 @@ class Contact:
         Mean over the neighbours among them.
     shown : (k,) bool
         Which of them can be seen; the hidden ones are not pushed.
+    sides : (e, 2) int32
+        Edges between seen ones, numbered among them; their middles meet teeth as well.
     arches : mapping
         Upper and lower teeth.
     eyes : tuple
         Eyeballs and the skin round them.
     lips : LipContact
     lining : LiningContact
+    folds : Unfolding
     """
 
     skin: Skin
@@ -96,10 +103,12 @@ class Contact:
     vertices: IntArray
     average: csr_matrix
     shown: BoolArray
+    sides: IntArray
     arches: Mapping[str, _Arch]
     eyes: tuple[_Eye, ...]
     lips: LipContact
     lining: LiningContact
+    folds: Unfolding
 
     @staticmethod
     def build(skin: Skin, mechanics: Mechanics) -> Contact:
@@ -109,8 +118,9 @@ class Contact:
         near = away < _REACH * skin.scale
         shown = ~skin.hidden | (mechanics.lips.inside & (mechanics.lips.distance < 8.0))
         vertices = np.flatnonzero(near & (skin.mass > 1e-9)).astype(np.int32)
+        sides = _sides(skin, vertices, shown)
         arches = {
-            kind: _arch(_teeth_and_gums(mechanics.head, kind), skin, vertices)
+            kind: _arch(_teeth_and_gums(mechanics.head, kind), skin, vertices, sides)
             for kind in ("teeth_upper", "teeth_lower")
             if kind in mechanics.head.parts
         }
@@ -125,10 +135,12 @@ class Contact:
             vertices,
             csr_matrix(skin.average[vertices][:, vertices]),
             shown[vertices],
+            sides,
             arches,
             eyes,
             LipContact.build(skin, mechanics.lips),
             LiningContact.build(skin, mechanics.lips),
+            Unfolding.build(skin, mechanics.lips),
         )
 
     def resolve(self, moved: FloatArray, values: Mapping[str, float]) -> FloatArray:
@@ -141,10 +153,11 @@ class Contact:
         values : mapping of str to float
             Resolved controls; the jaw's carry the lower teeth.
         """
-        moved = self.lips.part(moved)
+        moved = self.folds.relieve(self.lips.part(moved))
         for kind, arch in self.arches.items():
             jaw = self._jaw(values) if kind == "teeth_lower" else None
             moved = self._clear_teeth(moved, arch, jaw)
+        moved = self.folds.relieve(moved)
         for eye in self.eyes:
             yaw = values.get(f"gaze_yaw_{eye.side}", 0.0)
             pitch = values.get(f"gaze_pitch_{eye.side}", 0.0)
@@ -171,7 +184,7 @@ class Contact:
             points = rest + moved[self.vertices]
             if jaw is not None:
                 points = (points - jaw[1]) @ jaw[0]
-            push = arch.shortfall(points) * self.shown[:, None]
+            push = self._with_sides(arch.shortfall(points) * self.shown[:, None], arch, points)
             deepest = float(np.abs(push).max(initial=0.0))
             if deepest == 0.0:
                 break
@@ -188,6 +201,26 @@ class Contact:
             if last:
                 break
         return moved
+
+    def _with_sides(self, push: FloatArray, arch: _Arch, points: FloatArray) -> FloatArray:
+        """Return pushes (k, 3) that also clear the middles of the sides.
+
+        A vertex moves as far as the farthest of its middles and it itself must, in their mean
+        direction by how far, which no order of theirs changes.
+        """
+        first, second = self.sides.T
+        middle = arch.shortfall(0.5 * (points[first] + points[second]), middles=True)
+        size = np.sqrt((middle * middle).sum(axis=1))
+        hit = size > 0.0
+        if not hit.any():
+            return push
+        own = np.sqrt((push * push).sum(axis=1))
+        farthest, total = own.copy(), own[:, None] * push
+        for end in (first[hit], second[hit]):
+            np.maximum.at(farthest, end, size[hit])
+            np.add.at(total, end, size[hit, None] * middle[hit])
+        length = np.sqrt((total * total).sum(axis=1))
+        return total * (farthest / np.maximum(length, 1e-12))[:, None]
 
     def _clear_eye(self, moved: FloatArray, eye: _Eye, *, yaw: float, pitch: float) -> FloatArray:
         """Lift lids off the eyeball; the cornea of a turned eye raises them."""
@@ -218,7 +251,16 @@ def _teeth_and_gums(head: Head, kind: str) -> FloatArray:
     return np.concatenate([teeth, gums.mesh.positions[np.asarray(distance) < _GUMS]])
 
 
-def _arch(teeth: FloatArray, skin: Skin, vertices: IntArray) -> _Arch:
+def _sides(skin: Skin, vertices: IntArray, shown: BoolArray) -> IntArray:
+    """Return the edges (e, 2) among `vertices` whose ends can both be seen."""
+    place = np.full(len(skin.positions), -1, np.int32)
+    place[vertices] = np.arange(len(vertices), dtype=np.int32)
+    place[~shown] = -1
+    pairs = place[edges(skin.mesh.faces)]
+    return np.ascontiguousarray(pairs[(pairs >= 0).all(axis=1)])
+
+
+def _arch(teeth: FloatArray, skin: Skin, vertices: IntArray, sides: IntArray) -> _Arch:
     if skin.partner is not None:
         teeth = np.concatenate([teeth, teeth * MIRROR])
     rest = skin.positions
@@ -232,15 +274,25 @@ def _arch(teeth: FloatArray, skin: Skin, vertices: IntArray) -> _Arch:
     planes, offsets = hull.plane_normals[first], hull.plane_offsets[first]
     push = unit(planes * [1.0, 0.0, 1.0]) * (planes[:, 2:] > _BACK)
     own = (rest @ planes.T - offsets).max(axis=1)
-    height = skin.even(own)[vertices]
-    tissue = _LEFT * np.clip(height, 0.0, _THICKEST)
-    # The skin at rest is never pushed.
-    least = np.minimum(np.maximum(np.minimum(height, _CLEAR), tissue), own[vertices])
+    least = _least(skin.even(own)[vertices], own[vertices])
+    middles = 0.5 * (rest[vertices[sides[:, 0]]] + rest[vertices[sides[:, 1]]])
+    between = (middles @ planes.T - offsets).max(axis=1)
+    # What a middle keeps between the ends' own shares is enough: it is there to catch bulges.
+    middle_least = np.minimum(_CLEAR, between)
     reach = float(least.max(initial=0.0))
     box = np.stack([teeth.min(axis=0) - reach, teeth.max(axis=0) + reach])
     # Planes that face forwards first: they are most often the ones that count.
     order = np.argsort(-planes[:, 2], kind="stable")
-    return _Arch(np.ascontiguousarray(planes[order]), offsets[order], push[order], least, box)
+    return _Arch(
+        np.ascontiguousarray(planes[order]), offsets[order], push[order], least, middle_least, box
+    )
+
+
+def _least(height: FloatArray, own: FloatArray) -> FloatArray:
+    """Return the heights (k,) over the teeth that skin keeps, from its heights at rest [mm]."""
+    tissue = _LEFT * np.clip(height, 0.0, _THICKEST)
+    # The skin at rest is never pushed.
+    return np.minimum(np.maximum(np.minimum(height, _CLEAR), tissue), own)
 
 
 def _eye(side: str, skin: Skin, centre: FloatArray, surface: RadialSurface) -> _Eye:

@@ -250,8 +250,8 @@ def _mobility(mechanics: Mechanics) -> FloatArray:
     corner = marks.positions(("3.7", "3.12"))
     # The neck takes part farther back than the face, where the ears are.
     low = smooth_step((chin + 0.1 * height - points[:, 1]) / (0.25 * height))
-    behind = float(corner[:, 2].mean()) - (0.62 + 0.33 * low) * height
-    side = smooth_step((points[:, 2] - behind) / (0.3 * height))
-    neck = smooth_step((points[:, 1] - (chin - 0.58 * height)) / (0.35 * height))
+    behind = float(corner[:, 2].mean()) - (0.62 + 0.4 * low) * height
+    side = smooth_step((points[:, 2] - behind) / ((0.3 - 0.1 * low) * height))
+    neck = smooth_step((points[:, 1] - (chin - 0.58 * height)) / (0.24 * height))
     top = smooth_step((float(eyes[1]) + 0.9 * height - points[:, 1]) / (0.25 * height))
     return side * neck * top

@@ -12,10 +12,15 @@ from risorius.anatomy.mechanics import Mechanics
 from risorius.anatomy.outwards import unit
 from risorius.anatomy.skin import Skin
 from risorius.anatomy.tissue import swelling_depth
+from risorius.mesh.connectivity import edges
 
 __all__ = ["Swelling"]
 
-_PASSES, _SWELL_PASSES = 6, 3
+# Passes over the areas; together with those over the swelling they reach equally far on every
+# mesh: so many on a head whose edges round the mouth are so long [mm].
+_PASSES = 6
+_REFERENCE_PASSES, _REFERENCE_EDGE, _MOST_PASSES = 9.0, 3.75, 30
+_NEAR, _FAR = 18.0, 45.0
 _MOST_IN, _MOST_OUT = -3.0, 7.0
 
 
@@ -35,8 +40,12 @@ class Swelling:
         Thickness of swelling tissue [mm], faded where skin does not move.
     area : (m,) float64
         Smoothed vertex areas at rest [mm^2].
+    fade : (m,) float64
+        0 at the rim of the skin that moves, 1 inside.
     scale : float
         Size of the head over that of the built-in one.
+    passes : int
+        How often the swelling is averaged with its neighbours.
     """
 
     faces: IntArray
@@ -44,7 +53,9 @@ class Swelling:
     average: csr_matrix
     depth: FloatArray
     area: FloatArray
+    fade: FloatArray
     scale: float
+    passes: int
 
     @staticmethod
     def build(skin: Skin, mechanics: Mechanics, active: IntArray) -> Swelling:
@@ -58,7 +69,8 @@ class Swelling:
         area = around @ np.linalg.norm(crosses, axis=1)
         for _ in range(_PASSES):
             area = average @ area
-        return Swelling(faces, around, average, depth, area, skin.scale)
+        fade = np.minimum(4.0 * skin.mobility[active], 1.0)
+        return Swelling(faces, around, average, depth, area, fade, skin.scale, _passes(skin))
 
     def out(self, positions: FloatArray) -> FloatArray:
         """Return how tissue moves out (m, 3) where the skin at `positions` (m, 3) shrank [mm]."""
@@ -71,9 +83,21 @@ class Swelling:
         ratio[self.area <= 1e-9] = 1.0
         most_in, most_out = _MOST_IN * self.scale, _MOST_OUT * self.scale
         out = np.clip(self.depth * (1.0 / ratio - 1.0), most_in, most_out)
-        for _ in range(_SWELL_PASSES):
+        for _ in range(self.passes):
             out = self.average @ out
-        return out[:, None] * unit(sums[:, :3])
+        return (out * self.fade)[:, None] * unit(sums[:, :3])
+
+
+def _passes(skin: Skin) -> int:
+    """Return the passes over the swelling that reach as far as on other meshes."""
+    near = (skin.mouth.distance > _NEAR) & (skin.mouth.distance < _FAR) & ~skin.hidden
+    pairs = edges(skin.mesh.faces)
+    pairs = pairs[near[pairs].all(axis=1)]
+    if not len(pairs):
+        return 3
+    length = np.linalg.norm(skin.positions[pairs[:, 0]] - skin.positions[pairs[:, 1]], axis=1)
+    finer = _REFERENCE_EDGE * skin.scale / max(float(np.median(length)), 1e-9)
+    return int(np.clip(round(_REFERENCE_PASSES * finer**2) - _PASSES, 3, _MOST_PASSES))
 
 
 def _faces_between(skin: Skin, active: IntArray) -> IntArray:

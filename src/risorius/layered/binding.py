@@ -22,6 +22,7 @@ from risorius.layered.pulls import (
     submental_pull,
     upper_lid_pull,
 )
+from risorius.layered.support import Support
 from risorius.layered.unit_fields import FieldSolver
 
 __all__ = ["Binding", "bind_muscles"]
@@ -94,6 +95,7 @@ def bind_muscles(
     """
     binding = Binding()
     solver = FieldSolver(skin, mechanics.lips)
+    support = Support.of(skin, mechanics)
     for muscle in muscle_map.muscles:
         if kept is not None and muscle.name not in changed:
             binding.take(muscle, kept)
@@ -118,7 +120,10 @@ def bind_muscles(
                 binding.put(control, mirrored, skin.mirrored(binding.fields[left]))
                 continue
             pull = _pull(muscle, binding.fibres.get(name), skin, mechanics, corners)
-            binding.put(control, pull, solver.solve(pull))
+            field_ = solver.solve(pull)
+            if isinstance(muscle.action, SheetAction):
+                field_ = support.settle(field_)
+            binding.put(control, pull, field_)
     if kept is not None:
         binding.companions.update(kept.companions)
         return binding

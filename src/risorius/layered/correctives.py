@@ -42,16 +42,8 @@ class Correctives:
         How strongly each follows the linear field.
     solve : callable
         Solves ``hold u + length^2 L u = right`` for (m, 3) right sides.
-    faces : (f, 3) int32
-        Faces between active vertices.
-    around : (m, f) csr_matrix
-        Sums over the faces of each vertex.
-    average : (m, m) csr_matrix
-        `Skin.average` among active vertices.
-    depth : (m,) float64
-        Thickness of swelling tissue [mm], faded where skin does not move.
-    area : (m,) float64
-        Smoothed vertex areas at rest [mm^2].
+    swelling : Swelling
+        Of the tissue under the active vertices.
     """
 
     skin: Skin
@@ -62,11 +54,7 @@ class Correctives:
     edge_weight: FloatArray
     hold: FloatArray
     solve: Callable[[FloatArray], FloatArray]
-    faces: IntArray
-    around: csr_matrix
-    average: csr_matrix
-    depth: FloatArray
-    area: FloatArray
+    swelling: Swelling
 
     @staticmethod
     def build(skin: Skin, mechanics: Mechanics) -> Correctives:
@@ -79,18 +67,17 @@ class Correctives:
         hold = skin.mass[active] * hold[active]
         matrix = csc_matrix(diags(hold) + length**2 * stiff)
         rest = np.ascontiguousarray(skin.positions[active])
-        swelling = Swelling.build(skin, mechanics, active)
+        tissue = Swelling.build(skin, mechanics, active)
         return Correctives(
             skin, active, rest, edges.indptr.astype(np.int32), edges.indices.astype(np.int32),
-            length**2 * edges.data, hold, factorise(matrix), swelling.faces, swelling.around,
-            swelling.average, swelling.depth, swelling.area,
+            length**2 * edges.data, hold, factorise(matrix), tissue,
         )  # fmt: skip
 
     def shape(self, linear: FloatArray) -> FloatArray:
         """Return the displacement (n, 3) [mm] that the linear one (n, 3) stands for."""
         turned = self._turned(np.ascontiguousarray(linear[self.active]))
         field = linear.copy()
-        field[self.active] = turned + self._swelling(self.rest + turned)
+        field[self.active] = turned + self.swelling.out(self.rest + turned)
         return field
 
     def _turned(self, start: FloatArray) -> FloatArray:
@@ -108,13 +95,6 @@ class Correctives:
             turn_forces(*edges, turns, forces)
             result = self.solve(self.hold[:, None] * start + forces)
         return result
-
-    def _swelling(self, positions: FloatArray) -> FloatArray:
-        """Return how tissue that keeps its volume moves out where its area shrinks (m, 3)."""
-        tissue = Swelling(
-            self.faces, self.around, self.average, self.depth, self.area, self.skin.scale
-        )
-        return tissue.out(positions)
 
 
 def _positive_edges(stiff: csr_matrix) -> csr_matrix:

@@ -52,6 +52,10 @@ class SheetAction:
         Outward push at full contraction, negative inwards [mm].
     bulge : float
         The same at the origin only, fading towards the insertion [mm].
+    sideways : float
+        Motion away from the midline at full contraction, fading towards the insertion [mm].
+    slide : float
+        How far the skin is let go towards the origin: 1 holds it at the insertion only.
     seal : bool
         Whether the lips stay together under its pull.
     lip : {"upper", "lower"} or None
@@ -66,6 +70,8 @@ class SheetAction:
     corner: float = 0.0
     push: float = 0.0
     bulge: float = 0.0
+    sideways: float = 0.0
+    slide: float = 0.0
     seal: bool = False
     lip: Lip | None = None
 

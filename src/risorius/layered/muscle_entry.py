@@ -24,8 +24,9 @@ __all__ = ["read_muscle"]
 _MOST_SHORTENING = 0.95
 _NUMBERS = (
     "fixed_point", "stiffness", "reach", "tangential", "arch", "corner", "push", "bulge",
+    "sideways", "slide",
 )  # fmt: skip
-_SHARES = ("tangential", "arch", "corner", "fixed_point")
+_SHARES = ("tangential", "arch", "corner", "fixed_point", "slide")
 
 
 def read_muscle(entry: object, where: str) -> Muscle:

@@ -74,6 +74,8 @@ def sheet_pull(muscle: Muscle, action: SheetAction, fibres: FloatArray, skin: Sk
     along = (nearest[:, 0] // (len(places) // rows)) / (rows - 1.0)
     out = action.push + action.bulge * (1.0 - along)
     goal = goal + (out * skin.scale)[:, None] * skin.broad_normals
+    goal[:, 0] += action.sideways * skin.scale * (1.0 - along) * np.sign(fibres[..., 0].mean())
+    weight = weight * (1.0 - action.slide * (1.0 - along**2))
     return Pull(action.stiffness * weight, goal, action.seal)
 
 
