@@ -16,7 +16,8 @@ __all__ = ["LipSeal"]
 # Lips that the source opens by less than the first share of the mouth's width count as closed,
 # beyond the second as open.
 _CLOSED, _OPEN = 0.02, 0.08
-_ROUNDS = 4
+# Gaps that grow by less than this share of the width more than the source's are left alone.
+_ALIKE, _ROUNDS = 0.01, 4
 # Reach and smoothness of the correction, as shares of the mouth's width.
 _REACH, _LENGTH, _BEND = 0.25, 0.12, 0.04
 
@@ -72,10 +73,10 @@ class LipSeal:
             Displacement of the target's skin so far [mm].
         """
         moved = theirs @ self._turn
-        if self._trust == 0.0 or not self._parts(moved):
+        if self._trust == 0.0 or not (self._parting(moved) > _ALIKE * self._width).any():
             return None
         seen = self._target.gaps(moved)
-        if not (seen > self._target_rest + self._target.resolution).any():
+        if not (seen > self._target_rest + _ALIKE * self._width).any():
             return None
         grown = np.maximum(self._scale * (self._source.gaps(ours) - self._source_rest), 0.0)
         closed = self._trust - self._trust * smooth_step(
@@ -83,10 +84,11 @@ class LipSeal:
         )
         if not closed.any():
             return None
-        limit = self._target_rest + grown
+        limit = self._target_rest + grown + _ALIKE * self._width
         result = np.zeros_like(theirs)
         for _ in range(_ROUNDS):
-            excess = closed * np.maximum(seen - limit - self._target.resolution, 0.0)
+            # Lips that roll in show a gap without parting.
+            excess = closed * np.clip(seen - limit, 0.0, np.maximum(self._parting(moved), 0.0))
             if not excess.any():
                 break
             goal = np.zeros_like(theirs)
@@ -100,10 +102,10 @@ class LipSeal:
             seen = self._target.gaps(moved)
         return result @ self._turn.T if result.any() else None
 
-    def _parts(self, moved: FloatArray) -> bool:
-        """Return whether the contact lines part anywhere, so that a gap may grow."""
+    def _parting(self, moved: FloatArray) -> FloatArray:
+        """Return how far (25,) the contact lines part at each place, by the motion alone [mm]."""
         upper, lower = (
             interpolated(moved[line], place, LIP_PLACES) @ self._target.up
             for line, place in zip(self._lines, self._shares)
         )
-        return bool((upper - lower).max() > self._target.resolution)
+        return upper - lower
