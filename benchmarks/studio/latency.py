@@ -7,6 +7,7 @@ machine without a graphics card are upper bounds.
 from __future__ import annotations
 
 import argparse
+import os
 import statistics
 import tempfile
 import time
@@ -48,7 +49,7 @@ def _resident(process_id: int) -> float:
     return int(words[1]) * 4096 / 1e6
 
 
-def _key_toframe_of(visitor: Visitor) -> float:
+def _key_to_frame(visitor: Visitor) -> float:
     before = visitor.page.evaluate("risoriusViewport.stats.serial")
     start = time.perf_counter()
     visitor.page.keyboard.press("ArrowRight")
@@ -70,7 +71,7 @@ def in_browser(project: Project, seconds: float) -> None:
             slider.evaluate(
                 "e => (e.matches('[tabindex]') ? e : e.querySelector('[tabindex]')).focus()"
             )
-            times = [_key_toframe_of(visitor) for _ in range(25)][5:]
+            times = [_key_to_frame(visitor) for _ in range(25)][5:]
             print(
                 f"slider to drawn frame: median {statistics.median(times):.0f} ms, "
                 f"worst {max(times):.0f} ms"
@@ -90,9 +91,34 @@ def in_browser(project: Project, seconds: float) -> None:
             visitor.page.keyboard.press("Escape")
             visitor.panel("Play")
             visitor.click("play-joy")
-            visitor.page.wait_for_timeout(6000)
+            visitor.page.wait_for_function("risoriusViewport.player.alone()", timeout=120_000)
+            print(f"drawing on the processor: {_cost_of_drawing(visitor)}")
             visitor.click("play")
-            _memory(visitor, process.pid, seconds)
+            print("played by the page alone:")
+            _memory(visitor, process.pid, 0.5 * seconds)
+            visitor.page.evaluate("risoriusViewport.set({painted: true})")
+            print("played from frames of the server:")
+            _memory(visitor, process.pid, 0.5 * seconds)
+
+
+def _cost_of_drawing(visitor: Visitor) -> str:
+    """Time of the two passes that move all vertices, and of the picture [ms]."""
+    moved, drawn = visitor.page.evaluate(
+        """() => {
+          const { views, meshes, player } = risoriusViewport, gl = views.renderer.getContext();
+          const pixel = new Uint8Array(4), count = 10;
+          const timed = (work) => {
+            const start = performance.now();
+            for (let k = 0; k < count; k++) {
+              work();
+              gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+            }
+            return (performance.now() - start) / count;
+          };
+          return [timed(() => player.draw()), timed(() => views.draw())];
+        }"""
+    )
+    return f"targets {moved:.0f} ms, picture {drawn:.0f} ms"
 
 
 def _memory(visitor: Visitor, process_id: int, seconds: float) -> None:
@@ -100,7 +126,7 @@ def _memory(visitor: Visitor, process_id: int, seconds: float) -> None:
         "() => [risoriusViewport.stats.drawn, risoriusViewport.stats.bytes,"
         " performance.memory ? performance.memory.usedJSHeapSize / 1e6 : 0]"
     )
-    start, steps = time.monotonic(), 6
+    start, steps, busy = time.monotonic(), 5, _processor_time(process_id)
     for step in range(steps + 1):
         if step:
             visitor.page.wait_for_timeout(1e3 * seconds / steps)
@@ -109,6 +135,12 @@ def _memory(visitor: Visitor, process_id: int, seconds: float) -> None:
             f"  {time.monotonic() - start:5.0f} s: {drawn} frames drawn, {sent / 1e6:.0f} MB "
             f"received, server {_resident(process_id):.0f} MB, page {heap:.0f} MB"
         )
+    print(f"  processor time of the server: {_processor_time(process_id) - busy:.1f} s")
+
+
+def _processor_time(process_id: int) -> float:
+    fields = Path(f"/proc/{process_id}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def main() -> None:

@@ -33,7 +33,8 @@ def test_a_scene_brings_vertices_faces_and_colours() -> None:
         frames.scene([MESH], epoch=4, replaced=["skin"], facts={"height": 230.0})
     )
     assert head[:2] == (frames.SCENE, 4)
-    assert facts["meshes"] == [{"name": "skin", "group": "skin", "vertices": 3, "faces": 1}]
+    wanted = {"name": "skin", "group": "skin", "vertices": 3, "faces": 1, "solid": 1.0}
+    assert facts["meshes"] == [wanted]
     assert np.array_equal(np.frombuffer(blob, "<f4", 9).reshape(3, 3), REST)
     assert np.array_equal(np.frombuffer(blob, "<u4", 3, 36), [0, 1, 2])
     assert blob[48:57] == bytes([7] * 9)

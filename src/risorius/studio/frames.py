@@ -66,6 +66,7 @@ def scene(
                 "group": each.group,
                 "vertices": mesh.vertex_count,
                 "faces": mesh.face_count,
+                "solid": each.solid,
             }
         )
         blobs += [

@@ -64,6 +64,11 @@ class Panel:
     def take(self, event: str, message: Message) -> None:
         """Take a message of the viewport while in front."""
 
+    def clear_box(self) -> None:
+        """Take what has arrived from the list of the box; what is under way goes on."""
+        if self.box is not None:
+            self.box.run_method("removeUploadedFiles")
+
     def key(self, key: str) -> bool:
         """Take a key while in front; tell whether it meant something."""
         return False

@@ -29,6 +29,8 @@ __all__ = ["GROUPS", "SceneMesh", "Stage", "stage_of"]
 GROUPS = ("skin", "parts", "skull", "muscles")
 """Groups that a person shows and hides, in the order in which they are drawn."""
 
+# Triangles of single hairs are narrower than this [mm]; cards of many are drawn as a shade.
+_HAIR, _CARDS = 0.6, 0.2
 _BONE, _BELLY, _TENDON = "#d9cfba", "#a3423c", "#d8b49c"
 
 
@@ -46,12 +48,15 @@ class SceneMesh:
         At rest, canonical frame [mm].
     colour : (n, 3) uint8
         sRGB of every vertex.
+    solid : float
+        How solid it is beside its group, 0..1.
     """
 
     name: str
     group: str
     mesh: TriMesh
     colour: npt.NDArray[np.uint8]
+    solid: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +163,16 @@ def _bone_mesh(name: str, bone: TriMesh, before: Stage | None) -> SceneMesh:
 
 def _part_mesh(head: Head, kind: str, part: Part) -> SceneMesh:
     group = "skin" if kind == "skin" else "parts"
-    return SceneMesh(kind, group, part.mesh, _part_colour(head, kind, part))
+    solid = _CARDS if kind.startswith("lashes") and _has_cards(part.mesh) else 1.0
+    return SceneMesh(kind, group, part.mesh, _part_colour(head, kind, part), solid)
+
+
+def _has_cards(mesh: TriMesh) -> bool:
+    """Tell whether lashes are cards that a texture would cut into hairs."""
+    a, b, c = (mesh.positions[mesh.faces[:, corner]] for corner in range(3))
+    sides = np.stack([np.linalg.norm(edge, axis=1) for edge in (b - a, c - b, a - c)])
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return float(np.median(area / np.maximum(sides.max(axis=0), 1e-9))) > _HAIR
 
 
 def _part_colour(head: Head, kind: str, part: Part) -> npt.NDArray[np.uint8]:

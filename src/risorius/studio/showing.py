@@ -48,6 +48,9 @@ def facts_of(stage: Stage) -> dict[str, Any]:
     if low is None or high is None:
         points = head.skin.mesh.positions
         low, high = points.min(axis=0), points.max(axis=0)
+    else:
+        top = float(head.skin.mesh.positions[:, 1].max())  # landmarks of the crown are guesses
+        high = np.array([high[0], max(top, high[1]), high[2]])
     centre = 0.5 * (low + high)
     eyes = [name for name in ("3.7", "3.11", "3.8", "3.12") if name in marks]
     mouth = [name for name in ("8.3", "8.4") if name in marks]

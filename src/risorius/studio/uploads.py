@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Generator, Iterable
+from contextlib import contextmanager
 from pathlib import Path
 
+from risorius.errors import RisoriusError
 from risorius.io.atomic import write_bytes
 from risorius.studio.guard import inside
 
-__all__ = ["keep_upload"]
+__all__ = ["keep_upload", "trying_upload"]
 
 
 def keep_upload(folder: Path, name: str, data: bytes, *, endings: Iterable[str]) -> Path:
@@ -34,3 +36,18 @@ def keep_upload(folder: Path, name: str, data: bytes, *, endings: Iterable[str])
         path = inside(folder, f"{stem}-{count}{dot}{rest}", endings=known)
     write_bytes(path, data)
     return path
+
+
+@contextmanager
+def trying_upload(
+    folder: Path, name: str, data: bytes, *, endings: Iterable[str]
+) -> Generator[Path]:
+    """Keep an upload as `keep_upload` does, but not where what is done with it refuses it."""
+    known = set(folder.iterdir())
+    path = keep_upload(folder, name, data, endings=endings)
+    try:
+        yield path
+    except RisoriusError:
+        if path not in known:
+            path.unlink(missing_ok=True)
+        raise

@@ -222,7 +222,10 @@ class Workshop:
             if self.stage is not None:
                 await self.hub.ready()
                 self._wish.clear()
-                await self._pose()
+                if self._is_new(self.draft or self.document.work):
+                    self._wish.set()  # wished while no page could draw
+                else:
+                    await self._pose()
 
     def _is_new(self, work: Work) -> bool:
         """Return whether the face of a work has to be built and was not refused just now."""

@@ -29,6 +29,7 @@ class SpringSketch(Sketch):
     def __init__(self, name: str, *, mirror: bool = True, ring: bool = False) -> None:
         super().__init__(name, mirror=mirror)
         self._ring = ring
+        self._made: tuple[object, Drawn | None] = (None, None)
 
     @property
     def hint(self) -> str:
@@ -62,7 +63,16 @@ class SpringSketch(Sketch):
         return super().close()
 
     def drawn(self, work: Work, subject: Subject) -> Drawn | None:
-        """Return the recipe with the muscle of the rows that are finished."""
+        """Return the recipe with the muscle of the rows that are finished.
+
+        As long as these stay the same so does the work, and its face need not be built anew.
+        """
+        key = (work, self.mirror, tuple(tuple(line) for line in self.lines[:-1]))
+        if self._made[0] != key:
+            self._made = (key, self._draw(work, subject))
+        return self._made[1]
+
+    def _draw(self, work: Work, subject: Subject) -> Drawn | None:
         rows = [np.array([place.position for place in line]) for line in self.lines[:-1]]
         if len(rows) < (3 if self._ring else 2):
             return None

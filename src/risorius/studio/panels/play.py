@@ -11,7 +11,7 @@ from nicegui.events import UploadEventArguments, ValueChangeEventArguments
 
 from risorius.controls.presets import EMOTIONS
 from risorius.controls.stream import Stream
-from risorius.errors import ParameterError, RisoriusError
+from risorius.errors import ParameterError
 from risorius.io.json_fields import Fields
 from risorius.io.motion import read_stream, stream_endings
 from risorius.playback.emotion_timing import emotion_stream
@@ -25,7 +25,7 @@ from risorius.studio.panels.progress import Progress
 from risorius.studio.stage_rig import LARGEST
 from risorius.studio.stated import Message
 from risorius.studio.take import Take, Timed, open_take, rehearse
-from risorius.studio.uploads import keep_upload
+from risorius.studio.uploads import trying_upload
 from risorius.studio.viewport import Timeline
 
 __all__ = ["PlayPanel"]
@@ -123,17 +123,11 @@ class PlayPanel(Panel):
 
     async def _upload(self, event: UploadEventArguments) -> None:
         folder, data = self.shop.document.keeper.folder, await event.file.read()
-        known = set(folder.iterdir())
-        path = keep_upload(folder, event.file.name, data, endings=stream_endings())
-        if self.box is not None:
-            self.box.reset()
+        self.clear_box()
         self.page.turn_to(self)
         try:
-            await self._open(path)
-        except RisoriusError:
-            if path not in known:
-                path.unlink(missing_ok=True)  # what cannot be played is no part of the project
-            raise
+            with trying_upload(folder, event.file.name, data, endings=self.drops) as path:
+                await self._open(path)
         finally:
             self.enter()
 

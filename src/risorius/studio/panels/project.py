@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,11 +13,11 @@ from nicegui.events import UploadEventArguments, ValueChangeEventArguments
 from risorius import _formats
 from risorius.errors import FormatError, RisoriusError
 from risorius.head.head import Head
-from risorius.project import PROFILES
+from risorius.project import PROFILES, Project
 from risorius.studio.panel import Panel, group, heading
 from risorius.studio.panels.method import MethodToggle
-from risorius.studio.uploads import keep_upload
-from risorius.studio.work import work_of
+from risorius.studio.uploads import trying_upload
+from risorius.studio.work import Work, work_of
 
 __all__ = ["ProjectPanel"]
 
@@ -97,17 +98,18 @@ class ProjectPanel(Panel):
             project = replace(work.project, profile=str(event.value))
             self.shop.change(f"Profile {event.value}", replace(work, project=project))
 
-    def _take_builtin(self) -> None:
-        self._take_head(None, None)
+    async def _take_builtin(self) -> None:
+        await self._take_head(None, None)
 
     async def _upload(self, event: UploadEventArguments) -> None:
         folder, data = self.shop.document.keeper.folder, await event.file.read()
-        path = keep_upload(folder, event.file.name, data, endings=_ALL)
+        self.clear_box()
         self.page.turn_to(self)
-        if path.suffix.lower() == ".json":
-            await self._take_landmarks(path)
-        else:
-            await self._try_head(path)
+        with trying_upload(folder, event.file.name, data, endings=_ALL) as path:
+            if path.suffix.lower() == ".json":
+                await self._take_landmarks(path)
+            else:
+                await self._try_head(path)
 
     async def _take_landmarks(self, path: Path) -> None:
         work = self.shop.document.work
@@ -117,6 +119,10 @@ class ProjectPanel(Panel):
         if head is not None and head != work.project.head:
             await self._try_head(head, path)
             return
+        own = "builtin" if work.project.head is None else work.project.head.stem
+        if path.name.endswith(".landmarks.json") and name != own:
+            self.page.say(f"<b>{path.name}</b> is here. Now drop its head, <b>{name}.obj</b>.")
+            return
         specs = _formats.read_landmarks(path)
         self.shop.change("Landmarks from a file", replace(work, landmarks=dict(specs)))
 
@@ -124,23 +130,33 @@ class ProjectPanel(Panel):
         beside = path.with_suffix(".landmarks.json")
         marks = landmarks or (beside if beside.is_file() else None)
         if marks is None and not _formats.read_head(path)[1]:
-            self.page.tell(f"{path.name} is here; now drop its landmarks, {beside.name}")
+            self.page.say(
+                f"<b>{path.name}</b> is here. Now drop its landmarks, <b>{beside.name}</b>."
+            )
             return
-        self._take_head(path, marks)
+        await self._take_head(path, marks)
 
-    def _take_head(self, path: Path | None, landmarks: Path | None) -> None:
+    async def _take_head(self, path: Path | None, landmarks: Path | None) -> None:
         """Take another head after the same checks as on the command line."""
-        before = self.shop.document.work
-        project = replace(
-            before.project, head=path, landmarks=landmarks, unit=None, axes=None, parts={}
-        )
-        fresh = work_of(project)
-        work = replace(before, project=project, landmarks=fresh.landmarks, pose={})
-        try:
+
+        def of(project: Project) -> Project:
+            return replace(project, head=path, landmarks=landmarks, unit=None, axes=None, parts={})
+
+        wanted = of(self.shop.document.work.project)
+
+        def checked() -> Work:
+            work = work_of(wanted)
             if path is not None:
                 mesh, _ = _formats.read_head(path)
-                Head.from_mesh(mesh, work.landmarks, options=project.options)
+                Head.from_mesh(mesh, work.landmarks, options=wanted.options)
+            return work
+
+        try:
+            fresh = await asyncio.to_thread(checked)
         except RisoriusError as error:
             raise FormatError(f"{error}; the head before stays") from error
-        self.page.view.run_method("look", "three_quarter")
+        now = self.shop.document.work
+        work = replace(now, project=of(now.project), landmarks=fresh.landmarks, pose={})
+        self.page.say(self.hint)
+        self.page.view.look("three_quarter")
         self.shop.change("Another head", work)

@@ -11,6 +11,7 @@ const LINEAR = Float32Array.from({ length: 256 }, (_, k) => {
   return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
 });
 
+const deep = (group) => group === "skull" || group === "muscles";
 const padded = (count) => count + ((4 - (count % 4)) % 4);
 
 const MATERIALS = {
@@ -61,7 +62,7 @@ export class MeshBook {
     geometry.boundingSphere.radius += REACH;
     const material = new THREE.MeshStandardMaterial({
       vertexColors: true, metalness: 0, ...MATERIALS[entry.group],
-      side: entry.group === "skin" || entry.group === "parts" ? THREE.FrontSide : THREE.DoubleSide,
+      side: deep(entry.group) || entry.solid < 1 ? THREE.DoubleSide : THREE.FrontSide,
     });
     const mesh = new THREE.Mesh(geometry, material);
     mesh.name = entry.name;
@@ -69,7 +70,8 @@ export class MeshBook {
     mesh.renderOrder = ORDER[entry.group];
     this.morph.patch(entry.name, material);
     this.root.add(mesh);
-    this.byName.set(entry.name, { mesh, group: entry.group, rest, paint, painted: false });
+    const { group, solid } = entry;
+    this.byName.set(entry.name, { mesh, group, solid, rest, paint, painted: false });
   }
 
   remove(name) {
@@ -152,6 +154,7 @@ export class MeshBook {
         geometry.computeVertexNormals();
         const mesh = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({
           vertexColors: true, metalness: 0, ...MATERIALS[entry.group],
+          transparent: entry.solid < 1, opacity: entry.solid, depthWrite: entry.solid === 1,
         }));
         mesh.frustumCulled = false;
         set.add(mesh);
@@ -191,15 +194,14 @@ export class MeshBook {
     const entry = this.byName.get(name), settings = this.settings;
     if (!entry || !settings) return false;
     if (settings.hidden.includes(name)) return false;
-    const deep = entry.group === "skull" || entry.group === "muscles";
-    if (mode) return deep === (mode === 1);
+    if (mode) return deep(entry.group) === (mode === 1);
     return (settings.opacity[entry.group] ?? 1) > 0.001;
   }
 
   showFor(mode) {
     for (const [name, entry] of this.byName) {
       entry.mesh.visible = this.shows(name, mode);
-      const opacity = mode ? 1 : this.settings?.opacity[entry.group] ?? 1;
+      const opacity = entry.solid * (mode ? 1 : this.settings?.opacity[entry.group] ?? 1);
       const material = entry.mesh.material, clear = opacity < 0.999;
       material.opacity = opacity;
       if (material.transparent !== clear) {

@@ -4,6 +4,7 @@ import { OrbitControls, THREE } from "nicegui-scene";
 const BACKGROUND = 0x1b1d20, LINE = 0x2c3036;
 const ANGLE = 24, NARROW = 0.85; // degrees; width over height
 const NEAR = 0.76; // nine small faces are seen from nearer
+const OTHER = 0.05; // of the height: a head that differs by more is another one
 const PRESETS = {
   front: [0, 0.02, 1], three_quarter: [0.62, 0.08, 0.78], left: [1, 0.02, 0.02],
   right: [-1, 0.02, 0.02], mouth: [0, 0, 1], eyes: [0, 0, 1],
@@ -35,8 +36,11 @@ export class Views {
   }
 
   frame(facts) {
+    const before = this.facts, apart = facts.centre.map((x, k) => x - before.centre[k]);
+    const other = Math.hypot(...apart) > OTHER * before.height
+      || Math.abs(facts.height / before.height - 1) > OTHER;
     this.facts = facts;
-    if (!this.framed) this.look("three_quarter");
+    if (!this.framed || other) this.look("three_quarter");
     this.framed = true;
   }
 
