@@ -34,7 +34,7 @@ def test_a_linear_muscle_has_ten_genes_that_both_sides_share() -> None:
 def test_further_genes_say_how_skin_follows_and_bulges() -> None:
     linear, sheet = MUSCLES["zygomaticus_major_l"], MUSCLES["frontalis_inner_l"]
     for muscle, further in (
-        (linear, {"out", "corner", "drag", "reach", "bulge"}),
+        (linear, {"out", "corner", "drag", "reach", "bulge", "sink"}),
         (sheet, {"fixed", "fade_origin", "fade_insertion", "out", "drag", "reach"}),
     ):
         ten = {gene.name for gene in muscle_parameters([muscle])}

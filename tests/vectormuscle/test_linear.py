@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from risorius.errors import ParameterError, RisoriusWarning
 from risorius.mesh.core import TriMesh
 from risorius.vectormuscle.kinds import LinearMuscle
-from risorius.vectormuscle.muscle import KINDS
+from risorius.vectormuscle.muscle import KINDS, FaceContext
 from risorius.vectormuscle.profile import fold_limit
 from tests.face_fixtures import builtin_face
 from tests.vectormuscle.patches import context, linear, move_by, patch
@@ -242,7 +242,31 @@ def test_bulge_pushes_what_follows_outwards_and_the_plain_muscle_drags_nothing()
     assert not len(replace(muscle, drag=0.5).bind(strict).field)
 
 
-@pytest.mark.parametrize("change", [{"drag": 1.5}, {"drag": -0.1}, {"reach": 0.0}])
+def test_skin_sinks_around_the_insertion_towards_what_supports_it_and_nowhere_else() -> None:
+    face = builtin_face()
+    muscle = next(m for m in face.vectors.muscles if m.name == "zygomaticus_major_l")
+    assert isinstance(muscle, LinearMuscle)
+    plain, sunk = (_field(replace(muscle, sink=share), face.context) for share in (0.0, 0.5))
+    moved = sunk - plain
+    away = np.linalg.norm(face.context.positions - muscle.insertion, axis=1)
+    assert not moved[away > 0.6 * np.linalg.norm(muscle.insertion - muscle.origin)].any()
+    inward = -np.einsum("nd,nd->n", moved, face.context.outward)
+    np.testing.assert_allclose(np.linalg.norm(moved, axis=1), inward, atol=1e-9)
+    assert 0.3 * muscle.pull < inward.max() <= 0.5 * muscle.pull + 1e-9
+    np.testing.assert_allclose(_field(replace(muscle, sink=-0.5), face.context) - plain, -moved)
+    strict = replace(face.context, drag=False)
+    np.testing.assert_array_equal(_field(replace(muscle, sink=0.5), strict), _field(muscle, strict))
+
+
+def _field(muscle: LinearMuscle, seen: FaceContext) -> np.ndarray:
+    """Return the displacement (n, 3) at contraction 1 of the whole skin."""
+    bound = muscle.bind(seen)
+    result = np.zeros_like(seen.positions)
+    result[bound.vertices] = bound.displace(seen.positions[bound.vertices], 1.0)
+    return result
+
+
+@pytest.mark.parametrize("change", [{"sink": 3.0}, {"drag": 1.5}, {"drag": -0.1}, {"reach": 0.0}])
 def test_a_drag_outside_its_range_is_refused(change: dict[str, float]) -> None:
     muscle = next(m for m in builtin_face().vectors.muscles if isinstance(m, LinearMuscle))
     with pytest.raises(ParameterError, match=next(iter(change))):

@@ -40,7 +40,8 @@ _PUBLISHED: Mapping[str, Change] = MappingProxyType(
 # and stay inside the limits.
 _FURTHER: Mapping[str, Change] = MappingProxyType(
     {
-        "drag": Change("share", 0.0, 0.95), "reach": Change("factor", 0.5, 2.0),
+        "drag": Change("share", 0.0, 0.95), "reach": Change("factor", 0.5, 3.0),
+        "sink": Change("share", -0.3, 1.0),
         "out": Change("add", -0.7, 0.7), "bulge": Change("add", -0.7, 0.7),
         "corner": Change("share", 0.0, 0.95), "fixed": Change("share", 0.0, 0.6),
         "fade_origin": Change("factor", 0.4, 2.5), "fade_insertion": Change("factor", 0.4, 2.5),
@@ -55,7 +56,7 @@ _AXES = "xyz"
 def muscle_parameters(
     muscles: Iterable[VectorMuscle], *, mirror: bool = True, genes: Genes = "published"
 ) -> tuple[Parameter, ...]:
-    """Return the genes of muscles: ten for a linear one, or up to five more.
+    """Return the genes of muscles: ten for a linear one, or up to six more.
 
     Places shift by shares of the head's width, lengths and amounts are multiplied, angles are
     added to [deg], shares added to. With `mirror` one gene, named without side, drives both

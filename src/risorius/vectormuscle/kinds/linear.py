@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from risorius._check import FloatArray, IntArray, as_number
+from risorius.anatomy.smooth_step import smooth_step
 from risorius.errors import ParameterError, RisoriusWarning
 from risorius.vectormuscle.kernels.pull import pull_towards
 from risorius.vectormuscle.kinds.drag import drag_field
@@ -33,6 +34,8 @@ MOST_STRENGTH = 0.98 * fold_limit(start_radius=1.0, finish_radius=2.0) / _PULL
 """Greatest strength of a linear muscle; more would reach the fold limit of the profile."""
 # Skin that slides instead of sinking keeps its length up to this factor.
 MOST_STRETCH = 1.6
+# Skin goes back within this share of the muscle's length around its insertion.
+_SINK_REACH = 0.6
 # Wrinkles begin at this share of the start radius: at the bone there is no skin to fold.
 _FIRST_WRINKLE = 0.2
 
@@ -69,6 +72,9 @@ class LinearMuscle:
         How far from the insertion skin follows [mm].
     bulge : float
         Outward push of the skin that follows, in its motion; negative sinks.
+    sink : float
+        Inward push around the insertion, in pulls: a mouth corner that is drawn aside goes back
+        around the teeth; unpublished.
     """
 
     name: str
@@ -85,12 +91,14 @@ class LinearMuscle:
     drag: float = 0.0
     reach: float = 60.0
     bulge: float = 0.0
+    sink: float = 0.0
 
     def __post_init__(self) -> None:
         if float(np.linalg.norm(self.insertion - self.origin)) == 0.0:
             raise ParameterError(f"muscle {self.name}: origin and insertion are one point")
         as_number(f"muscle {self.name}: drag", self.drag, low=0.0, high=1.0)
         as_number(f"muscle {self.name}: reach", self.reach, low=1e-6)
+        as_number(f"muscle {self.name}: sink", self.sink, low=-1.0, high=2.0)
         if self.strength > MOST_STRENGTH:
             _warn(
                 f"muscle {self.name}: strength {self.strength:g} would fold the skin; taken as "
@@ -191,6 +199,16 @@ class LinearMuscle:
         amount = self.drag * self.pull * free
         return drag_field(context, self.ends(), amount, reach=self.reach)
 
+    def _sunk(self, context: FaceContext) -> tuple[IntArray, FloatArray]:
+        """Return vertices and field (k, 3) [mm] of what goes back around the insertion."""
+        radius = _SINK_REACH * float(np.linalg.norm(self.insertion - self.origin))
+        rows, offset = context.within(self.insertion, radius)
+        near = smooth_step(1.0 - np.linalg.norm(offset, axis=1) / radius)
+        amount = self.sink * self.pull * near * context.regions.mobility[rows]
+        if self.regions:
+            amount *= context.regions.permission(self.regions)[rows]
+        return rows, -amount[:, None] * context.outward[rows]
+
     def bind(self, context: FaceContext) -> BoundLinear:
         """Precompute the zone: permitted vertices with an effect."""
         effect = self._effect(context)
@@ -202,6 +220,11 @@ class LinearMuscle:
             field[rows] = dragged
             push[rows] += self.bulge * np.linalg.norm(dragged, axis=1)
             acts[rows] |= dragged.any(axis=1)
+        if self.sink and context.drag:
+            rows, sunk = self._sunk(context)
+            field = field if len(field) else np.zeros_like(context.positions)
+            field[rows] += sunk
+            acts[rows] |= sunk.any(axis=1)
         vertices = np.flatnonzero(acts).astype(np.int32)
         if self.out or len(field):
             out = push[vertices, None] * context.normals[vertices]
@@ -229,7 +252,7 @@ class LinearMuscle:
         }
         if self.regions:
             entry["regions"] = list(self.regions)
-        for key, value in (("out", self.out), ("corner", self.corner)):
+        for key, value in (("out", self.out), ("corner", self.corner), ("sink", self.sink)):
             if value:
                 entry[key] = value
         if self.drag:
@@ -282,6 +305,7 @@ def _read(entry: Mapping[str, Any], where: str) -> LinearMuscle:
             ("drag", 0.0),
             ("reach", 60.0),
             ("bulge", 0.0),
+            ("sink", 0.0),
         )
     }
     return LinearMuscle(
@@ -299,6 +323,7 @@ def _read(entry: Mapping[str, Any], where: str) -> LinearMuscle:
         number["drag"],
         number["reach"],
         number["bulge"],
+        number["sink"],
     )
 
 
