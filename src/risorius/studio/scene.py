@@ -30,7 +30,7 @@ GROUPS = ("skin", "parts", "skull", "muscles")
 """Groups that a person shows and hides, in the order in which they are drawn."""
 
 # Triangles of single hairs are narrower than this [mm]; cards of many are drawn as a shade.
-_HAIR, _CARDS = 0.6, 0.2
+_HAIR, _CARDS = 0.6, 0.12
 _BONE, _BELLY, _TENDON = "#d9cfba", "#a3423c", "#d8b49c"
 
 

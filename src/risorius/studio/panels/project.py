@@ -11,6 +11,7 @@ from nicegui import ui
 from nicegui.events import UploadEventArguments, ValueChangeEventArguments
 
 from risorius import _formats
+from risorius.anatomy.mechanics import Mechanics
 from risorius.errors import FormatError, RisoriusError
 from risorius.head.head import Head
 from risorius.project import PROFILES, Project
@@ -148,7 +149,7 @@ class ProjectPanel(Panel):
             work = work_of(wanted)
             if path is not None:
                 mesh, _ = _formats.read_head(path)
-                Head.from_mesh(mesh, work.landmarks, options=wanted.options)
+                Mechanics.build(Head.from_mesh(mesh, work.landmarks, options=wanted.options))
             return work
 
         try:

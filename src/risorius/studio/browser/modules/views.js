@@ -49,7 +49,7 @@ export class Views {
     const spot = spots[preset];
     const target = new THREE.Vector3(...(spot || centre));
     const direction = new THREE.Vector3(...(PRESETS[preset] || PRESETS.front)).normalize();
-    const distance = (spot ? 0.95 : 3.3) * height;
+    const distance = (spot ? 0.85 : 2.9) * height;
     this.orbit.target.copy(target);
     this.camera.position.copy(target).addScaledVector(direction, distance);
     this.camera.up.set(0, 1, 0);
