@@ -52,6 +52,10 @@ def _drawn(visitor: Visitor) -> None:
         lambda: visitor.positions("skin")[corner][1] > rest[1] + 0.3, "and moves while it is drawn"
     )
     visitor.picture("10_grid_drawn")
+    visitor.slide("contract-new", 0.0)
+    visitor.until(
+        lambda: np.allclose(visitor.positions("skin")[corner], rest, atol=0.02), "and goes back"
+    )
     _row(visitor, rows[2])
     facts = visitor.mark("feedback-facts")
     visitor.until(lambda: "zygomaticus major" in facts.inner_text(), "its end merges with others")
