@@ -1,8 +1,9 @@
-"""Skin that folds on the target and not on the source is smoothed.
+"""Skin that folds or tears on the target and not on the source is smoothed.
 
 The same motion that fits under one chin is too long for the skin under another: what moves passes
-what rests, and the skin folds over. There the motion gives way to the smoothest one that joins
-what moves to what rests farther off.
+what rests, and the skin folds over. At the corners of a mouth neighbours may have taken their
+motion from places far apart, and the edge between them tears. There the motion gives way to the
+smoothest one that joins what moves to what rests farther off.
 """
 
 from __future__ import annotations
@@ -27,6 +28,10 @@ __all__ = ["FoldRelief", "least_progress"]
 _UNFOLDED, _FULL, _LEAST = 0.5, 0.3, 0.25
 # How far around a fold motion gives way: a share of what moves there, within limits [mm].
 _REACH, _SMALLEST, _LARGEST = 0.8, 3.0, 25.0
+# An edge stretched to so many times its length, and so many times what the source's are, tears;
+# by how much more it does so in full, the least growth as a share of the face's height, and the
+# reach around a tear [mm].
+_STRETCHED, _OVER, _TORN, _GROWTH, _TEAR_REACH = 1.8, 1.25, 0.7, 0.003, 3.0
 # Stiffness against bending [mm], trust in motion at a full fold and away from it.
 _BEND, _DOUBT, _TRUST = 10.0, 1e-3, 1e4
 # Faces thinner than this share of their longer side.
@@ -83,7 +88,8 @@ class FoldRelief:
 
     def __init__(self, source: Subject, target: Subject, mapping: Mapping) -> None:
         self._source, self._mesh, self._mapping = source.mesh, target.mesh, mapping
-        self._edges = edges(target.mesh.faces)
+        self._edges, self._source_edges = edges(target.mesh.faces), edges(source.mesh.faces)
+        self._seen, self._height = ~target.inside, target.head.height
         self._open = _open(target)
         self._graph = edge_graph(target.mesh)
         stiff = cotangent_laplacian(target.mesh.positions, target.mesh.faces)
@@ -108,13 +114,38 @@ class FoldRelief:
         given = np.minimum(given[self._mapping.faces].min(axis=1), _UNFOLDED)
         return np.clip((given - made) / _FULL, 0.0, 1.0)
 
+    def torn(self, ours: FloatArray, theirs: FloatArray) -> FloatArray:
+        """Return how much more (n,) edges at each vertex are stretched on the target, 0 to 1.
+
+        Parameters
+        ----------
+        ours : (v, 3) float64
+            Displacement of the source's skin [mm].
+        theirs : (n, 3) float64
+            Displacement of the target's skin [mm].
+        """
+        least = _GROWTH * self._height
+        made = _stretch(self._mesh, self._edges, theirs, least)
+        made[~self._seen] = 1.0
+        if not (made > _STRETCHED).any():
+            return np.zeros(len(theirs))
+        given = _stretch(self._source, self._source_edges, ours, 0.0)
+        given = np.maximum(_OVER * given[self._mapping.faces].max(axis=1), _STRETCHED)
+        return np.clip((made - given) / _TORN, 0.0, 1.0)
+
     def relieve(self, ours: FloatArray, theirs: FloatArray) -> FloatArray:
         """Return the target's displacement (n, 3) without folds that the source does not have."""
-        excess = self.excess(ours, theirs)
+        excess, torn = self.excess(ours, theirs), self.torn(ours, theirs)
         folds = np.flatnonzero(excess > _LEAST).astype(np.int32)
-        if not len(folds):
+        tears = np.flatnonzero(torn > 0.0).astype(np.int32)
+        if not len(folds) + len(tears):
             return theirs
-        doubt = self._doubt(folds, excess, theirs)
+        doubt = np.zeros(len(theirs))
+        if len(folds):
+            doubt = self._doubt(folds, excess, self._reach(folds, theirs))
+        if len(tears):
+            reach = np.full(len(tears), _TEAR_REACH)
+            doubt = np.maximum(doubt, self._doubt(tears, torn, reach))
         zone, held = np.flatnonzero(doubt > 0.0), np.flatnonzero(doubt == 0.0)
         trust = np.minimum(_DOUBT / np.maximum(doubt, 1e-6) ** 2, _TRUST) * self._mass
         rows = self._bent[zone]
@@ -124,16 +155,29 @@ class FoldRelief:
         result[zone] = factorise(csc_matrix(system))(right)
         return result
 
-    def _doubt(self, folds: IntArray, excess: FloatArray, theirs: FloatArray) -> FloatArray:
-        """Return how little (n,) motion is trusted around folds, fading along the skin."""
+    def _reach(self, folds: IntArray, theirs: FloatArray) -> FloatArray:
+        """Return how far (k,) around each fold motion gives way, by what moves there [mm]."""
         size = np.linalg.norm(theirs, axis=1)
-        pairs = self._edges
         around = size.copy()
-        np.maximum.at(around, pairs.ravel(), size[pairs[:, ::-1]].ravel())
-        reach = np.clip(_REACH * around[folds], _SMALLEST, _LARGEST)
-        away = dijkstra(self._graph, indices=folds, limit=float(reach.max()))
+        np.maximum.at(around, self._edges.ravel(), size[self._edges[:, ::-1]].ravel())
+        return np.clip(_REACH * around[folds], _SMALLEST, _LARGEST)
+
+    def _doubt(self, rows: IntArray, excess: FloatArray, reach: FloatArray) -> FloatArray:
+        """Return how little (n,) motion is trusted around `rows` (k,), fading along the skin."""
+        away = dijkstra(self._graph, indices=rows, limit=float(reach.max()))
         near = np.maximum(1.0 - away / reach[:, None], 0.0)
-        return (excess[folds, None] * near).max(axis=0)
+        return (excess[rows, None] * near).max(axis=0)
+
+
+def _stretch(mesh: TriMesh, pairs: IntArray, moved: FloatArray, least: float) -> FloatArray:
+    """Return the largest stretch (n,) of edges at each vertex; growth below `least` is none."""
+    along = mesh.positions[pairs[:, 1]] - mesh.positions[pairs[:, 0]]
+    length = np.linalg.norm(along, axis=1)
+    after = np.linalg.norm(along + moved[pairs[:, 1]] - moved[pairs[:, 0]], axis=1)
+    ratio = np.where(after - length > least, after / np.maximum(length, 1e-9), 1.0)
+    result = np.ones(mesh.vertex_count)
+    np.maximum.at(result, pairs.ravel(), np.repeat(ratio, 2))
+    return result
 
 
 def _open(target: Subject) -> BoolArray:
