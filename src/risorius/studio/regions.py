@@ -9,7 +9,7 @@ from risorius.controls.standard import MUSCLES, SINGLE_MUSCLES
 
 __all__ = ["REGIONS", "Row", "region_of", "rows_of", "title_of"]
 
-REGIONS = ("Brows", "Eyes", "Nose and cheeks", "Lips and chin", "Jaw", "Tongue", "My muscles")
+REGIONS = ("My muscles", "Brows", "Eyes", "Nose and cheeks", "Lips and chin", "Jaw", "Tongue")
 """Groups of controls from top to bottom."""
 
 _STEMS = {

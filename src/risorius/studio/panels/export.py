@@ -28,6 +28,16 @@ _WORDS = {
     ".npz": "NPZ: NumPy",
     ".zip": "OBJ files in a zip",
 }
+_SETS = {
+    "singles": "muscles one by one",
+    "emotions": "six emotions",
+    "arkit": "ARKit 52",
+    "visemes_mpeg4": "visemes, MPEG-4",
+    "visemes_oculus": "visemes, Oculus",
+    "facs": "FACS action units",
+    "fap": "MPEG-4 parameters",
+    "mpeg4_84": "MPEG-4, the 84 of the thesis",
+}
 _BAD = "#ff5a4d"
 
 
@@ -44,8 +54,9 @@ class ExportPanel(Panel):
         with group("Rig"):
             self._kind = ui.select({kind: _WORDS[kind] for kind in KINDS}, value=".glb")
             self._kind.props("dense").style("width:100%").props("data-mark=export-kind")
+            chosen = list(self.shop.document.work.project.shapes)
             self._sets = ui.select(
-                list(ALL_SHAPE_SETS), value=list(self.shop.document.work.project.shapes),
+                {name: _SETS.get(name, name) for name in ALL_SHAPE_SETS}, value=chosen,
                 multiple=True, label="shapes",
             )  # fmt: skip
             self._sets.props("dense use-chips").style("width:100%")
@@ -94,7 +105,9 @@ class ExportPanel(Panel):
             return
         path, rig = done
         size = path.stat().st_size / 1e6
-        self._written.set_text(f"{path.name}: {len(rig.targets)} shapes, {size:.1f} MB")
+        self._written.set_text(
+            f"{path.name}: {len(rig.targets)} shapes, {size:.1f} MB; in {path.parent}"
+        )
         ui.download.file(path)
 
     async def _inspect(self) -> None:
@@ -111,6 +124,7 @@ class ExportPanel(Panel):
 
     def _show_report(self, rig: Rig, report: QualityReport) -> None:
         found = shortcomings(report)
+        self.page.say("Click a line: the head takes that shape and shows its vertices.")
         self._verdict.set_text(
             f"{len(report.shapes)} shapes; "
             + (f"{len(found)} below the bar" if found else "all good")

@@ -27,7 +27,10 @@ class FacePanel(Panel):
 
     name = "Face"
     icon = "face"
-    hint = "Move a slider: the face follows. <b>Drag</b> turns the view, <b>wheel</b> zooms."
+    hint = (
+        "Move a slider: the face follows. <b>Drag</b> turns the view, <b>wheel</b> zooms. "
+        "<b>Muscles</b> draws new ones, <b>Export</b> writes the rig."
+    )
 
     def build(self) -> None:
         """Make the elements."""
