@@ -129,7 +129,7 @@ def test_a_shape_that_a_rig_has_is_fitted_and_the_distance_told(
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        (["--genes", "some"], "'some' is not one of published, all, intensities"),
+        (["--genes", "some"], "'some' is not one of all, intensities, published"),
         (["--genes", ""], "give published or all"),
         (["--genes", "published,all"], "give published or all"),
         (["--genes", "all,intensities"], "name a file for them with --presets-output"),

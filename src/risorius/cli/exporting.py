@@ -15,11 +15,12 @@ from risorius.cli.talk import Talk
 from risorius.head.head import Head
 from risorius.io.atomic import write_bytes
 from risorius.project import BUILTIN, Project, presets_of, vectors_of
+from risorius.tuning.style import Style
 from risorius.vectormuscle.export import Export, ExportParameters
 from risorius.vectormuscle.export_points import FeatureSet, find_features
 from risorius.vectormuscle.vector_set import VectorSet
 
-__all__ = ["Way", "as_feature", "begin_export", "write_vectors"]
+__all__ = ["Way", "as_feature", "begin_export", "tuned_expressions", "write_vectors"]
 
 
 @dataclass(frozen=True)
@@ -82,6 +83,20 @@ def begin_export(project: Project, way: Way, talk: Talk, *, first: Iterable[str]
     talk.say(f"  feature points found by shape: {', '.join(found) or '-'}")
     talk.say(f"  correspondences: {len(export.pairs)}")
     return export
+
+
+def tuned_expressions(project: Project, style: Style) -> tuple[str, ...]:
+    """Return the expressions of which a style knows all vector muscles.
+
+    They go first when muscles are carried in the style, as they did when it was tuned.
+    """
+    names = {muscle.name for muscle in vectors_of(project).muscles}
+    tuned = {name.partition(".")[0] for name in style.parameters}
+    return tuple(
+        expression
+        for expression, pose in presets_of(project).emotions.items()
+        if all({name, name[:-2]} & tuned for name, value in pose.items() if value and name in names)
+    )
 
 
 def write_vectors(vectors: VectorSet, path: Path, talk: Talk) -> None:

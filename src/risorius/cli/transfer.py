@@ -74,7 +74,12 @@ def transfer(
     Example:  risorius transfer head.obj -l head.landmarks.json -o head.vectors.json
     """
     with talking(json=json, quiet=quiet, debug=debug) as talk:
-        from risorius.cli.exporting import Way, begin_export, write_vectors
+        from risorius.cli.exporting import (
+            Way,
+            begin_export,
+            tuned_expressions,
+            write_vectors,
+        )
         from risorius.cli.outputs import require_json_output, require_picture_output
         from risorius.cli.sources import Given, resolve
         from risorius.cli.tuning_pictures import write_emotions
@@ -95,7 +100,8 @@ def transfer(
         )  # fmt: skip
         project = resolve(head, given)
         way = Way(from_head, from_landmarks, source_point, target_point)
-        export = begin_export(project, way, talk)
+        first = tuned_expressions(project, worn)
+        export = begin_export(project, way, talk, first=first)
         width = export.features[1].width
         for name in unknown_of(project, worn):
             talk.note(f"style: no muscle or preset has the parameter {name}")
