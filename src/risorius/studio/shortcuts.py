@@ -15,8 +15,9 @@ SHORTCUTS = {
         ("2", "two views: outside and inside"),
     ),
     "Draw muscles": (
-        ("click", "place a point on bone or muscle"),
-        ("Enter, double click", "finish the line"),
+        ("click", "place a point on bone, muscle or skin"),
+        ("Enter, double click", "finish the line or the row"),
+        ("Enter once more", "keep the muscle"),
         ("Backspace", "take the last point back"),
         ("Escape", "stop drawing"),
         ("drag a point", "move it on the surface"),
