@@ -27,6 +27,7 @@ __all__ = ["Style", "parse_style", "read_style", "write_style"]
 
 SCHEMA = "risorius/style"
 VERSION = 1
+_DIGITS = 6
 _METHODS = {"layered": "layered muscles", "springs": "spring muscles", "vector": "vector muscles"}
 
 
@@ -47,8 +48,9 @@ class Style:
     method: str = "vector"
 
     def with_parameters(self, values: Mapping[str, float]) -> Style:
-        """Return the style with more parameters; new values replace old ones."""
-        return Style({**self.parameters, **values}, self.method)
+        """Return the style with more parameters, as its file keeps them; new replace old ones."""
+        rounded = {name: round(value, _DIGITS) for name, value in values.items()}
+        return Style({**self.parameters, **rounded}, self.method)
 
     def without_muscles(self, names: Iterable[str]) -> Style:
         """Return the style without what it says of muscles (without side)."""
@@ -120,7 +122,7 @@ class Style:
 
     def to_json(self) -> dict[str, Any]:
         """Return the file's content."""
-        rounded = {name: round(value, 6) for name, value in self.parameters.items()}
+        rounded = {name: round(value, _DIGITS) for name, value in self.parameters.items()}
         return {
             "schema": SCHEMA,
             "version": VERSION,
