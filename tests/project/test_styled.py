@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -71,7 +73,7 @@ def test_a_map_in_a_style_is_the_tuned_map() -> None:
 
 
 @pytest.mark.parametrize("method", ["layered", "springs"])
-def test_what_is_tuned_is_what_the_file_makes(method: str) -> None:
+def test_what_is_tuned_is_what_the_file_makes(tmp_path: Path, method: str) -> None:
     head = builtin_head()
     project = Project(method=method)
     subject = tunable_of(project, head, mechanics=Mechanics.build(head))
@@ -83,8 +85,12 @@ def test_what_is_tuned_is_what_the_file_makes(method: str) -> None:
     assert {name.partition(".")[0] for name in candidates.genome.names} == {"corrugator"}
     made = candidates.positions(STYLES[method])
     assert np.abs(made - subject.face_in(style).pose(pose)).max() < 0.05
-    key = "muscle_map" if method == "layered" else "recipe"
-    file = Project(method=method, inline={key: subject.document(style)})
+    path = tmp_path / "tuned.json"
+    subject.write(style, path)
+    file = {
+        "layered": Project(method=method, muscle_map=path),
+        "springs": Project(method=method, recipe=path),
+    }[method]
     assert np.abs(made - face_of(file, head).pose(pose)).max() < 0.05
     assert np.abs(made - subject.face.pose(pose)).max() > 0.2
 

@@ -112,7 +112,12 @@ def _smile(face: Face) -> FloatArray:
     data = np.load(real_data_folder() / "ict_facekit/ict_facekit.npz")
     names = [str(name) for name in data["expression_names"]]
     deltas = sum(data["expression_deltas"][names.index(f"mouthSmile_{side}")] for side in "LR")
-    # The file of the head lacks the vertices that no polygon uses.
-    used = np.unique(data["polygons"][data["polygons"] >= 0])
-    assert len(used) == face.head.vertex_count
-    return face.head.positions + face.head.frame.scale * np.asarray(deltas)[used]
+    # The file of the head lacks some vertices of the archive; the order is the same.
+    source, everything = face.head.source.positions, data["vertices"]
+    rows: list[int] = []
+    for place in source:
+        row = rows[-1] + 1 if rows else 0
+        while np.abs(everything[row] - place).max() > 1e-4:
+            row += 1
+        rows.append(row)
+    return face.head.positions + face.head.frame.scale * np.asarray(deltas)[rows]

@@ -92,7 +92,7 @@ def test_accepting_everything_as_proposed_is_the_export_without_tuning() -> None
 
 def test_the_exported_set_survives_its_file_and_runs_on_the_head() -> None:
     carried = broad_export().vector_set()
-    again = parse_vector_set(json.loads(carried.text()), source="x.json")
+    again = parse_vector_set(json.loads(json.dumps(carried.to_json())), source="x.json")
     face = VectorFace.build(broad_head(), again)
     pose = {"zygomaticus_major_l": 1.0, "frontalis_inner_r": 0.5, "jaw_pitch": 6.0}
     assert np.abs(face.pose(pose) - broad_face().pose(pose)).max() < 0.05

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -17,7 +16,7 @@ from risorius.controls.standard import (
     sided,
 )
 from risorius.errors import ParameterError
-from risorius.io.atomic import write_bytes
+from risorius.io.atomic import write_json
 from risorius.io.motion import write_stream
 from risorius.playback.emotion_timing import Timing, blended_pose, emotion_stream
 from risorius.project.preset_document import presets_document, with_emotions
@@ -65,6 +64,6 @@ def write_preset(
     controls = (*controls_of_muscles(muscles), *device_controls())
     document = with_emotions(document, {name: blended_pose(book, intensities, controls)})
     pose = document["emotions"][name]
-    write_bytes(path, (json.dumps(document, indent=1, ensure_ascii=False) + "\n").encode())
+    write_json(path, document)
     talk.put(output=path, preset=name, pose=pose)
     talk.say(f"wrote {path}: {name} of {len(pose)} controls; risorius rig HEAD --presets {path}")

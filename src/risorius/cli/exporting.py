@@ -13,7 +13,7 @@ from risorius._check import FloatArray
 from risorius.cli.sources import Given, read_head, resolve
 from risorius.cli.talk import Talk
 from risorius.head.head import Head
-from risorius.io.atomic import write_bytes
+from risorius.io.atomic import write_json
 from risorius.project import BUILTIN, Project, presets_of, vectors_of
 from risorius.tuning.style import Style
 from risorius.vectormuscle.export import Export, ExportParameters
@@ -101,7 +101,7 @@ def tuned_expressions(project: Project, style: Style) -> tuple[str, ...]:
 
 def write_vectors(vectors: VectorSet, path: Path, talk: Talk) -> None:
     """Write a vector set and say so."""
-    write_bytes(path, vectors.text().encode())
+    write_json(path, vectors.to_json())
     talk.say(f"wrote {path}: {len(vectors.muscles)} muscles")
     talk.put(output=path, muscles=[muscle.name for muscle in vectors.muscles])
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 from risorius.anatomy.mechanics import Mechanics
 from risorius.cli.talk import Talk
@@ -68,8 +67,8 @@ def tune_export(export: Export, tuning: Tuning, talk: Talk) -> VectorSet:
     return vectors
 
 
-def tune_muscles(subject: Tunable, tuning: Tuning) -> dict[str, Any]:
-    """Go through the expressions of layered or spring muscles; return the file of the recipe.
+def tune_muscles(subject: Tunable, tuning: Tuning) -> None:
+    """Go through the expressions of layered or spring muscles.
 
     A muscle is tuned in the first of the wanted expressions that contracts it.
 
@@ -98,4 +97,3 @@ def tune_muscles(subject: Tunable, tuning: Tuning) -> dict[str, Any]:
             )
         face = subject.face if muscles is not None else subject.face_in(tuning.style)
         tuning.run(expression, face, muscles)
-    return subject.document(tuning.style)

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from risorius._check import FloatArray
 from risorius.anatomy.mechanics import Mechanics
-from risorius.cli.exporting import Way, begin_export
+from risorius.cli.exporting import Way, begin_export, write_vectors
 from risorius.cli.sources import read_head
 from risorius.cli.talk import Talk
 from risorius.cli.tuning import LEAST_SQUARES, Tuning, TuningChoices
 from risorius.cli.tuning_export import tune_export, tune_muscles
 from risorius.errors import ParameterError
 from risorius.head.head import Head
-from risorius.io.atomic import write_bytes
+from risorius.io.atomic import write_json
 from risorius.project import Project, presets_of
 from risorius.project.preset_document import presets_document_of, with_emotions
 from risorius.project.styled import unknown_of
@@ -88,22 +86,25 @@ def run_tuning(
     if project.method == "vector":
         export = begin_export(project, way, talk, first=choices.expressions)
         tuning = tuning_of(export.target)
-        document = tune_export(export, tuning, talk).to_json()
+        vectors = tune_export(export, tuning, talk)
+        if choices.genes is not None:
+            write_vectors(vectors, goals.output, talk)
     else:
         head = read_head(project, talk)
         tuning = tuning_of(head)
         with talk.stage("muscles"):
             subject = tunable_of(project, head, mechanics=Mechanics.build(head))
-        document = tune_muscles(subject, tuning)
-    if choices.genes is not None:
-        _write(document, goals.output, talk, f"{len(document['muscles'])} muscles")
-        talk.put(muscles=[muscle["name"] for muscle in document["muscles"]])
+        tune_muscles(subject, tuning)
+        if choices.genes is not None:
+            count = subject.write(tuning.style, goals.output)
+            talk.say(f"wrote {goals.output}: {count} muscles")
     if choices.intensities:
         path = goals.output if goals.presets is None else goals.presets
         emotions = tuning.style.on_presets(presets).emotions
         wanted = {name: emotions[name] for name in choices.expressions}
         changed = with_emotions(presets_document_of(project), wanted)
-        _write(changed, path, talk, f"presets with {', '.join(wanted)} as tuned")
+        write_json(path, changed)
+        talk.say(f"wrote {path}: presets with {', '.join(wanted)} as tuned")
     talk.put(
         output=goals.output, style=dict(tuning.style.parameters), method=project.method,
         seed=choices.seed,
@@ -117,12 +118,6 @@ def _goal(head: Head, choices: TuningChoices, target: Target | None) -> FloatArr
     if target is None:
         return None
     return read_target(target.path, head, shape=target.shape, expression=choices.expressions[0])
-
-
-def _write(document: dict[str, Any], path: Path, talk: Talk, what: str) -> None:
-    text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
-    write_bytes(path, f"{text}\n".encode())
-    talk.say(f"wrote {path}: {what}")
 
 
 def _require(

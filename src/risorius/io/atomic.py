@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import os
 import secrets
 import shutil
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from risorius.errors import FormatError
 
-__all__ = ["atomic_folder", "atomic_write", "write_bytes"]
+__all__ = ["atomic_folder", "atomic_write", "write_bytes", "write_json"]
 
 
 @contextmanager
@@ -97,6 +99,12 @@ def write_bytes(path: str | Path, data: bytes) -> None:
     """Write `data` to `path` as a whole or not at all (see `atomic_write`)."""
     with atomic_write(path) as temporary:
         temporary.write_bytes(data)
+
+
+def write_json(path: str | Path, document: Mapping[str, Any]) -> None:
+    """Write `document` as JSON that people read, as a whole or not at all."""
+    text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
+    write_bytes(path, f"{text}\n".encode())
 
 
 def _require_parent(path: Path, goal: Path) -> None:

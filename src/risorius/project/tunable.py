@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol
+from pathlib import Path
+from typing import Protocol
 
 from risorius.anatomy.mechanics import Mechanics
 from risorius.controls.control import Pose
 from risorius.head.head import Head
+from risorius.io.atomic import write_json
 from risorius.layered.faithful import FaithfulFace
 from risorius.layered.muscle_map import MuscleMap
 from risorius.layered.workbench import Workbench
@@ -16,7 +18,7 @@ from risorius.project.project import Project
 from risorius.project.springs import recipe_of, spring_face
 from risorius.rig.face import Face
 from risorius.springmuscle.face import SpringFace
-from risorius.springmuscle.recipe_file import recipe_to_json
+from risorius.springmuscle.recipe_file import write_recipe
 from risorius.springmuscle.redrawing import redrawn
 from risorius.tuning.candidates import FaceCandidates
 from risorius.tuning.change import Genes
@@ -49,8 +51,8 @@ class Tunable(Protocol):
         """Return the face in a style."""
         ...
 
-    def document(self, style: Style) -> dict[str, Any]:
-        """Return the file of the recipe in a style."""
+    def write(self, style: Style, path: Path) -> int:
+        """Write the recipe in a style; return the number of its muscles."""
         ...
 
 
@@ -103,9 +105,11 @@ class TunableMap:
         """Return the face in a style."""
         return self._build(style.on_map(self.muscle_map))
 
-    def document(self, style: Style) -> dict[str, Any]:
-        """Return the file of the map in a style."""
-        return style.on_map(self.muscle_map).to_json()
+    def write(self, style: Style, path: Path) -> int:
+        """Write the map in a style; return the number of its muscles."""
+        drawn = style.on_map(self.muscle_map)
+        write_json(path, drawn.to_json())
+        return len(drawn.muscles)
 
     def _redrawn(self, drawn: MuscleMap) -> Workbench:
         assert self._bench is not None
@@ -139,6 +143,8 @@ class TunableRecipe:
         drawn = style.on_recipe(self.recipe, fit=self._fit)
         return redrawn(self.face, self.recipe, drawn)
 
-    def document(self, style: Style) -> dict[str, Any]:
-        """Return the file of the recipe in a style."""
-        return recipe_to_json(style.on_recipe(self.recipe, fit=self._fit))
+    def write(self, style: Style, path: Path) -> int:
+        """Write the recipe in a style; return the number of its muscles."""
+        drawn = style.on_recipe(self.recipe, fit=self._fit)
+        write_recipe(drawn, path)
+        return len(drawn.muscles)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any, cast
 from risorius._check import as_number
 from risorius.controls.presets import PresetBook
 from risorius.errors import FormatError, ParameterError
-from risorius.io.atomic import write_bytes
+from risorius.io.atomic import write_json
 from risorius.io.bounded import check_schema, read_json
 from risorius.layered.muscle_map import MuscleMap
 from risorius.springmuscle.fit_parameters import FitParameters
@@ -184,5 +183,4 @@ def write_style(style: Style, path: str | Path) -> None:
     FormatError
         If the file cannot be written.
     """
-    text = json.dumps(style.to_json(), indent=1, ensure_ascii=False, allow_nan=False)
-    write_bytes(path, f"{text}\n".encode())
+    write_json(path, style.to_json())

@@ -61,11 +61,6 @@ class VectorSet:
         kept = tuple(changed.get(muscle.name, muscle) for muscle in self.muscles)
         return VectorSet(kept, self.landmarks)
 
-    def text(self) -> str:
-        """Return the file's text."""
-        document = json.dumps(self.to_json(), indent=1, ensure_ascii=False, allow_nan=False)
-        return f"{document}\n"
-
     def to_json(self) -> dict[str, Any]:
         """Return the file's content; every muscle is written with its side."""
         return {
