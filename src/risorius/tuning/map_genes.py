@@ -28,7 +28,7 @@ _AMOUNT = Change("factor", 0.5, 1.5)
 _HOLD = Change("factor", 0.5, 2.0)
 _SIZE = Change("factor", 0.75, 1.25)
 _SHARE = Change("share", 0.0, 1.0)
-_SHORTENING = Change("factor", 0.6, 1.1, most=0.95)
+_SHORTENING = Change("factor", 0.6, 1.3, most=0.95)
 # Outwards at full contraction [mm].
 _OUT = Change("add", -2.0, 2.0)
 _ENDS = tuple(f"{end}_{axis}" for end in ("origin", "insertion") for axis in "xyz")
