@@ -13,7 +13,8 @@ from risorius.layered.muscle_map import default_muscle_map, read_muscle_map
 from risorius.project import read_presets
 from risorius.rig.rig import Rig
 from risorius.springmuscle.recipe_file import default_recipe, read_recipe
-from risorius.tuning.style import read_style
+from risorius.tuning.map_genes import apply_map_genes
+from risorius.tuning.style import Style, read_style, write_style
 from tests.cli.running import answer, run
 from tests.tuning.faces import builtin_bench, expression
 
@@ -46,20 +47,20 @@ def test_a_pick_tunes_the_muscles_of_a_method_and_makes_its_style(
     assert changed == tuned
 
 
-def test_rig_wears_a_style_as_it_takes_the_file(tmp_path: Path) -> None:
-    out, style = tmp_path / "tuned.json", tmp_path / "mine.style.json"
-    options = ("-m", "layered", "--expression", "disgust", "--picks", "3;a", *GENETIC)
-    assert run("tune", "builtin", "-o", out, *options, "--style-output", style).exit_code == 0
-    shapes = []
-    for extra in (("--muscle-map", out), ("--style", style)):
-        rig = tmp_path / "rig.npz"
-        made = run("rig", "builtin", "--shapes", "emotions", *extra, "-o", rig, "-q")
-        assert made.exit_code == 0, made.stderr
-        shapes.append(_shape(rig, "disgust"))
-    assert np.abs(shapes[0] - shapes[1]).max() < 1e-3
-    plain = builtin_bench().face
-    untuned = plain.displace(expression(plain, "disgust"))
-    assert np.abs(shapes[0] - untuned).max() > 0.3
+def test_rig_wears_a_style(tmp_path: Path) -> None:
+    style, rig = tmp_path / "mine.style.json", tmp_path / "rig.npz"
+    parameters = {"corrugator.shortening": 0.7, "levator_alae_nasi.origin_y": 0.03}
+    write_style(Style({**parameters, "disgust.procerus": -0.2}, "layered"), style)
+    made = run("rig", "builtin", "--shapes", "emotions", "--style", style, "-o", rig, "-q")
+    assert made.exit_code == 0, made.stderr
+    bench = builtin_bench()
+    face = bench.redrawn(apply_map_genes(default_muscle_map(), parameters)).face
+    pose = expression(face, "disgust")
+    pose["procerus"] -= 0.2
+    shape = _shape(rig, "disgust")
+    assert np.abs(shape - face.displace(pose)).max() < 1e-3
+    untuned = bench.face.displace(expression(bench.face, "disgust"))
+    assert np.abs(shape - untuned).max() > 0.3
 
 
 def test_intensities_alone_make_presets(tmp_path: Path) -> None:
