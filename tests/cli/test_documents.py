@@ -17,6 +17,7 @@ from risorius.io.bounded import parse_json
 from risorius.project import read_project
 from risorius.render import read_png
 from risorius.rig.quality import inspect_rig
+from risorius.tuning.style import read_style
 from tests.cli.running import REPOSITORY, run
 from tests.cli.test_main import VERBS
 
@@ -93,7 +94,17 @@ def _load(path: Path) -> ModuleType:
 
 
 def test_every_example_is_run_below() -> None:
-    assert [path.stem for path in EXAMPLES] == ["own_expression", "rig_a_head", "turntable"]
+    assert [path.stem for path in EXAMPLES] == [
+        "carry_a_style", "own_expression", "rig_a_head", "turntable",
+    ]  # fmt: skip
+
+
+def test_the_example_that_carries_a_style_ends_with_a_wider_smile(tmp_path: Path) -> None:
+    style = _load(REPOSITORY / "examples" / "carry_a_style.py").main([str(tmp_path)])
+    assert read_style(tmp_path / "wide.style.json") == style
+    pictures = [read_png(tmp_path / f"smile_{when}.png") for when in ("before", "after")]
+    assert np.abs(pictures[0].astype(float) - pictures[1]).mean() > 0.5
+    assert style.parameters["zygomaticus_major.shortening"] > 1.0
 
 
 def test_the_example_that_rigs_a_head_ends_with_a_rig(tmp_path: Path, monkeypatch) -> None:
