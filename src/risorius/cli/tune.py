@@ -199,7 +199,7 @@ def tune(
         from risorius.cli.outputs import require_json_output, require_picture_output
         from risorius.cli.sources import Given, resolve
         from risorius.cli.tuning import TuningChoices, as_genes
-        from risorius.cli.tuning_run import Goals, Target, run_tuning
+        from risorius.cli.tuning_run import Target, TuningFiles, run_tuning
 
         goal = require_json_output(output)
         for other in (style_output, presets_output):
@@ -225,10 +225,10 @@ def tune(
             sheet=require_picture_output(sheet or goal.with_suffix(".png")),
             view=view,
         )
-        goals = Goals(goal, presets_output, style_output)
+        files = TuningFiles(goal, presets_output, style_output, style)
         way = Way(from_head, from_landmarks, source_point, target_point)
         run_tuning(
-            resolve(head, given), choices, goals, talk, way=way, style=style,
+            resolve(head, given), choices, files, talk, way=way,
             target=Target(target, target_shape) if target else None,
         )  # fmt: skip
         talk.say_seconds()

@@ -73,6 +73,10 @@ class TuningChoices:
         for name in self.expressions:
             one_of("expression", name, EXPORT_ORDER)
 
+    def strategy_for(self, target: bool) -> str:
+        """Return the strategy, with a target or without one."""
+        return self.strategy or (LEAST_SQUARES if target else "preference")
+
 
 def as_genes(text: str) -> tuple[Genes | None, bool]:
     """Return which genes of muscles are tuned, and whether intensities are.
@@ -165,7 +169,7 @@ class Tuning:
     def _values(self, candidates: Candidates, expression: str) -> Mapping[str, float]:
         choices, genome = self.choices, candidates.genome
         start = self.style.start_of(genome)
-        strategy = choices.strategy or (LEAST_SQUARES if self._target is not None else "preference")
+        strategy = choices.strategy_for(self._target is not None)
         if self._target is not None and strategy == LEAST_SQUARES:
             return self._fitted(candidates, genome.values(start), self._target, expression)
         sensitivity = None

@@ -22,16 +22,17 @@ from risorius.project.tunable import tunable_of
 from risorius.tuning.style import Style, read_style, write_style
 from risorius.tuning.target import read_target
 
-__all__ = ["Goals", "Target", "run_tuning"]
+__all__ = ["Target", "TuningFiles", "run_tuning"]
 
 
 @dataclass(frozen=True)
-class Goals:
-    """Where results go: OUT, presets beside muscles, the style."""
+class TuningFiles:
+    """Where results go: OUT, presets beside muscles, the style; and the style to begin with."""
 
     output: Path
     presets: Path | None = None
     style: Path | None = None
+    begin: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -45,11 +46,10 @@ class Target:
 def run_tuning(
     project: Project,
     choices: TuningChoices,
-    goals: Goals,
+    files: TuningFiles,
     talk: Talk,
     *,
     way: Way,
-    style: Path | None = None,
     target: Target | None = None,
 ) -> None:
     """Tune the muscles of a project's head and write them.
@@ -58,12 +58,10 @@ def run_tuning(
     ----------
     project : Project
     choices : TuningChoices
-    goals : Goals
+    files : TuningFiles
     talk : Talk
     way : Way
         From where vector muscles are carried.
-    style : Path, optional
-        Where to begin.
     target : Target, optional
         What the only expression shall look like.
 
@@ -72,12 +70,11 @@ def run_tuning(
     RisoriusError
         If something is refused.
     """
-    _require(project, choices, goals, way, target)
-    worn = Style(method=project.method) if style is None else read_style(style)
-    worn.require_method(project.method, source=str(style))
-    if style is not None:
-        for name in unknown_of(project, worn):
-            talk.note(f"style: no muscle or preset has the parameter {name}")
+    _require(project, choices, files, way, target)
+    worn = Style(method=project.method) if files.begin is None else read_style(files.begin)
+    worn.require_method(project.method, source=str(files.begin))
+    for name in unknown_of(project, worn) if worn.parameters else ():
+        talk.note(f"style: no muscle or preset has the parameter {name}")
     presets = presets_of(project)
 
     def tuning_of(head: Head) -> Tuning:
@@ -88,7 +85,7 @@ def run_tuning(
         tuning = tuning_of(export.target)
         vectors = tune_export(export, tuning, talk)
         if choices.genes is not None:
-            write_vectors(vectors, goals.output, talk)
+            write_vectors(vectors, files.output, talk)
     else:
         head = read_head(project, talk)
         tuning = tuning_of(head)
@@ -96,22 +93,22 @@ def run_tuning(
             subject = tunable_of(project, head, mechanics=Mechanics.build(head))
         tune_muscles(subject, tuning)
         if choices.genes is not None:
-            count = subject.write(tuning.style, goals.output)
-            talk.say(f"wrote {goals.output}: {count} muscles")
+            count = subject.write(tuning.style, files.output)
+            talk.say(f"wrote {files.output}: {count} muscles")
     if choices.intensities:
-        path = goals.output if goals.presets is None else goals.presets
+        path = files.output if files.presets is None else files.presets
         emotions = tuning.style.on_presets(presets).emotions
         wanted = {name: emotions[name] for name in choices.expressions}
         changed = with_emotions(presets_document_of(project), wanted)
         write_json(path, changed)
         talk.say(f"wrote {path}: presets with {', '.join(wanted)} as tuned")
     talk.put(
-        output=goals.output, style=dict(tuning.style.parameters), method=project.method,
-        seed=choices.seed,
+        output=files.output, style=dict(tuning.style.parameters), method=project.method,
+        strategy=choices.strategy_for(target is not None), seed=choices.seed,
     )  # fmt: skip
-    if goals.style is not None:
-        write_style(tuning.style, goals.style)
-        talk.say(f"wrote {goals.style}: {len(tuning.style.parameters)} tuned parameters")
+    if files.style is not None:
+        write_style(tuning.style, files.style)
+        talk.say(f"wrote {files.style}: {len(tuning.style.parameters)} tuned parameters")
 
 
 def _goal(head: Head, choices: TuningChoices, target: Target | None) -> FloatArray | None:
@@ -121,7 +118,7 @@ def _goal(head: Head, choices: TuningChoices, target: Target | None) -> FloatArr
 
 
 def _require(
-    project: Project, choices: TuningChoices, goals: Goals, way: Way, target: Target | None
+    project: Project, choices: TuningChoices, files: TuningFiles, way: Way, target: Target | None
 ) -> None:
     """Refuse wishes that contradict each other, before the long work."""
     muscles = choices.genes is not None
@@ -131,12 +128,12 @@ def _require(
         raise ParameterError(
             f"strategy: {LEAST_SQUARES} needs a shape to fit; give --target, or another strategy"
         )
-    if choices.intensities and muscles and goals.presets is None:
+    if choices.intensities and muscles and files.presets is None:
         raise ParameterError(
             "genes: intensities are kept in presets, and OUT holds the muscles; name a file for "
             "them with --presets-output"
         )
-    if goals.presets is not None and not (choices.intensities and muscles):
+    if files.presets is not None and not (choices.intensities and muscles):
         raise ParameterError(
             "presets-output: is for intensities that are tuned beside muscles; add intensities to "
             "--genes, or leave it out"
