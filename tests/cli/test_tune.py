@@ -77,7 +77,7 @@ def test_a_sculpted_head_needs_nobody(tmp_path: Path) -> None:
     sculpted.write_text("\n".join(lifted))
     options = ("--target", sculpted, "--generations", "4", "--expression", "disgust", "--json")
     told = answer(run("tune", "builtin", "-o", tmp_path / "fit.json", *options))
-    assert told["distance"]["after"] <= told["distance"]["before"]
+    assert told["distances"]["disgust"]["after"] <= told["distances"]["disgust"]["before"]
 
 
 def test_lines_mean_what_the_help_says() -> None:

@@ -105,26 +105,26 @@ def test_muscles_and_intensities_go_into_files_of_their_own(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("method", ["layered", "vector"])
-def test_a_shape_that_a_rig_has_is_fitted_and_the_distance_told(
+def test_shapes_that_a_rig_has_are_fitted_and_the_distances_told(
     tmp_path: Path, method: str
 ) -> None:
-    # Sculpted: a weaker and shifted disgust of the same method.
-    change = {"levator_labii.origin_y": 0.03, "disgust.levator_labii": -0.2}
-    style = {"schema": "risorius/style", "version": 1, "method": method, "parameters": change}
-    wish = tmp_path / "wish.style.json"
-    wish.write_text(json.dumps(style))
-    rig = tmp_path / "sculpted.npz"
+    # Sculpted: weaker and shifted expressions of the same method.
+    change = {"levator_labii.origin_y": 0.03, "disgust.levator_labii": -0.2, "anger.procerus": -0.3}
+    wish, rig = tmp_path / "wish.style.json", tmp_path / "sculpted.npz"
+    write_style(Style(change, method), wish)
     options = ("-m", method, "--shapes", "emotions", "--style", wish, "-q")
     assert run("rig", "builtin", *options, "-o", rig).exit_code == 0
     told = answer(
         run(
             "tune", "builtin", "-o", tmp_path / "fit.json", "-m", method, "--target", rig,
-            "--expression", "disgust", "--genes", "intensities", "--json",
+            "--expression", "disgust,anger", "--genes", "intensities", "--json",
         )
     )  # fmt: skip
-    distance = told["distance"]
-    assert distance["after"] < 0.8 * distance["before"] < distance["neutral"]
-    assert 0.5 < distance["motion"] <= 1.0
+    assert told["strategy"] == "least-squares"
+    for distance in (told["distances"][name] for name in ("anger", "disgust")):
+        assert distance["after"] < 0.8 * distance["before"] < distance["neutral"]
+        assert 0.5 < distance["motion"] <= 1.0
+    assert told["style"]["anger.procerus"] == pytest.approx(-0.3, abs=0.1)
 
 
 @pytest.mark.parametrize(
@@ -140,6 +140,7 @@ def test_a_shape_that_a_rig_has_is_fitted_and_the_distance_told(
         (["-m", "springs", "--from", "a.obj"], "only vector muscles are carried"),
         (["-m", "layered", "--target-point", "nose_tip=0,0,0"], "only vector muscles are carried"),
         (["--target", "gone.obj"], "gone.obj: no such file"),
+        (["--target", "a.glb", "--target-shape", "b", "--expression", "joy,fear"], "give one, or"),
     ],
 )
 def test_wishes_that_contradict_each_other_are_refused(

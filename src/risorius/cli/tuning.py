@@ -111,8 +111,8 @@ class Tuning:
     style : Style
         Where tuning begins.
     choices : TuningChoices
-    target : (n, 3) float64 or None
-        The head sculpted in the only expression [mm].
+    targets : mapping of str to (n, 3) float64
+        The head sculpted in each expression [mm]; empty where somebody chooses.
     talk : Talk
     """
 
@@ -122,14 +122,15 @@ class Tuning:
         presets: PresetBook,
         style: Style,
         choices: TuningChoices,
-        target: FloatArray | None,
+        targets: Mapping[str, FloatArray],
         talk: Talk,
     ) -> None:
         self.style = style
         self.presets = presets
         self.choices = choices
         self.ended = False
-        self._target, self._talk = target, talk
+        self._targets, self._talk = targets, talk
+        self._distances: dict[str, dict[str, float]] = {}
         self._page = FacePage(head, choices.view)
         self._lines = typed() if choices.picks == "contact-sheet" else scripted(choices.picks)
 
@@ -169,9 +170,10 @@ class Tuning:
     def _values(self, candidates: Candidates, expression: str) -> Mapping[str, float]:
         choices, genome = self.choices, candidates.genome
         start = self.style.start_of(genome)
-        strategy = choices.strategy_for(self._target is not None)
-        if self._target is not None and strategy == LEAST_SQUARES:
-            return self._fitted(candidates, genome.values(start), self._target, expression)
+        target = self._targets.get(expression)
+        strategy = choices.strategy_for(target is not None)
+        if target is not None and strategy == LEAST_SQUARES:
+            return self._fitted(candidates, genome.values(start), target, expression)
         sensitivity = None
         if strategy == "preference":
             with self._talk.stage("sensitivity"):
@@ -179,8 +181,8 @@ class Tuning:
         session = Session(
             genome, strategy=strategy, seed=choices.seed, start=start, sensitivity=sensitivity
         )
-        if self._target is not None:
-            return self._approached(candidates, session, self._target, expression)
+        if target is not None:
+            return self._approached(candidates, session, target, expression)
         return self._chosen(candidates, session, expression)
 
     def _chosen(
@@ -225,11 +227,9 @@ class Tuning:
         rest = self._page.head.positions
         whole = float(np.sqrt(((target - rest) ** 2).sum(axis=1).mean()))
         made = 1.0 - (after / whole) ** 2
-        self._talk.put(
-            distance={
-                "neutral": whole, "before": before, "after": after, "unit": "mm", "motion": made,
-            }
-        )  # fmt: skip
+        told = {"neutral": whole, "before": before, "after": after, "motion": made}
+        self._distances[expression] = told
+        self._talk.put(distances=self._distances)
         self._talk.say(
             f"{expression}: {before:.3f} mm from the target before, {after:.3f} after; the neutral "
             f"head is {whole:.3f} mm from it, so {100.0 * made:.0f} % of its motion is made"

@@ -20,7 +20,7 @@ from risorius.project.preset_document import presets_document_of, with_emotions
 from risorius.project.styled import unknown_of
 from risorius.project.tunable import tunable_of
 from risorius.tuning.style import Style, read_style, write_style
-from risorius.tuning.target import read_target
+from risorius.tuning.target import may_have_shapes, read_target
 
 __all__ = ["Target", "TuningFiles", "run_tuning"]
 
@@ -63,7 +63,7 @@ def run_tuning(
     way : Way
         From where vector muscles are carried.
     target : Target, optional
-        What the only expression shall look like.
+        What the expressions shall look like.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def run_tuning(
     presets = presets_of(project)
 
     def tuning_of(head: Head) -> Tuning:
-        return Tuning(head, presets, worn, choices, _goal(head, choices, target), talk)
+        return Tuning(head, presets, worn, choices, _goals(head, choices, target), talk)
 
     if project.method == "vector":
         export = begin_export(project, way, talk, first=choices.expressions)
@@ -111,10 +111,16 @@ def run_tuning(
         talk.say(f"wrote {files.style}: {len(tuning.style.parameters)} tuned parameters")
 
 
-def _goal(head: Head, choices: TuningChoices, target: Target | None) -> FloatArray | None:
+def _goals(head: Head, choices: TuningChoices, target: Target | None) -> dict[str, FloatArray]:
     if target is None:
-        return None
-    return read_target(target.path, head, shape=target.shape, expression=choices.expressions[0])
+        return {}
+    several = len(choices.expressions) > 1
+    return {
+        name: read_target(
+            target.path, head, shape=name if several else target.shape, expression=name
+        )
+        for name in choices.expressions
+    }
 
 
 def _require(
@@ -122,8 +128,12 @@ def _require(
 ) -> None:
     """Refuse wishes that contradict each other, before the long work."""
     muscles = choices.genes is not None
-    if target is not None and len(choices.expressions) > 1:
-        raise ParameterError("target: a sculpted head shows one expression; give one")
+    one_head = target is not None and (target.shape or not may_have_shapes(target.path))
+    if one_head and len(choices.expressions) > 1:
+        raise ParameterError(
+            "target: a sculpted head shows one expression; give one, or a rig that has a shape for "
+            "each"
+        )
     if target is None and choices.strategy == LEAST_SQUARES:
         raise ParameterError(
             f"strategy: {LEAST_SQUARES} needs a shape to fit; give --target, or another strategy"

@@ -15,7 +15,7 @@ from risorius.io.npz_archive import Archive
 from risorius.rig.rig import Rig
 from risorius.warp.similarity import Similarity, fit_similarity
 
-__all__ = ["read_target", "require_target"]
+__all__ = ["may_have_shapes", "read_target", "require_target"]
 
 _ROUNDS = 6
 # What a sculpted head may differ in from the neutral one as a whole: factor, turn [deg], and shift
@@ -69,9 +69,14 @@ def read_target(path: Path, head: Head, *, expression: str, shape: str | None = 
     return require_target(head, rig.posed({wanted: 1.0}), source=f"{source}, {wanted}")
 
 
+def may_have_shapes(path: Path) -> bool:
+    """Return whether a path is of a kind that can hold a rig."""
+    return path.is_dir() or path.suffix.lower() in (".npz", ".glb", ".gltf")
+
+
 def _rig_of(path: Path) -> Rig | None:
     """Return the rig of a file or folder that has shapes; None of other meshes."""
-    if not path.is_dir() and path.suffix.lower() not in (".npz", ".glb", ".gltf"):
+    if not may_have_shapes(path):
         return None
     rig = _formats.read_rig(path)
     return rig if rig.names else None
