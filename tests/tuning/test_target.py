@@ -99,11 +99,19 @@ def test_a_rig_gives_the_shape_of_the_expression_or_the_one_named(
     path = tmp_path / name
     _rig().save(path)
     face = builtin_face()
-    for shape, wanted in ((None, "joy"), ("anger", "anger")):
-        found = read_target(path, HEAD, expression="joy", shape=shape)
+    for shapes, wanted in ((None, "joy"), ({"anger": 1.0}, "anger")):
+        found = read_target(path, HEAD, expression="joy", shapes=shapes)
         assert np.abs(found - face.pose(expression(face, wanted))).max() < 1e-3
     with pytest.raises(ParameterError, match="has no shape 'fear'; name one of its 2 with"):
-        read_target(path, HEAD, expression="joy", shape="fear")
+        read_target(path, HEAD, expression="joy", shapes={"fear": 1.0})
+
+
+def test_shapes_of_a_rig_add_up_to_a_target(tmp_path: Path) -> None:
+    rig = _rig()
+    rig.save(tmp_path / "face.npz")
+    weights = {"joy": 0.5, "anger": 0.8}
+    found = read_target(tmp_path / "face.npz", HEAD, expression="joy", shapes=weights)
+    assert np.allclose(found, HEAD.frame.to_canonical(rig.posed(weights)))
 
 
 def test_positions_in_an_archive_are_a_target(tmp_path: Path) -> None:
@@ -135,7 +143,7 @@ def test_ply_files_are_read_and_have_no_shapes(tmp_path: Path) -> None:
     found = read_target(path, HEAD, expression="joy")
     assert np.abs(found - require_target(HEAD, _smile(), source="x")).max() < 1e-3
     with pytest.raises(ParameterError, match="is no rig, it has no shape 'joy'"):
-        read_target(path, HEAD, expression="joy", shape="joy")
+        read_target(path, HEAD, expression="joy", shapes={"joy": 1.0})
 
 
 @pytest.mark.parametrize("name", ["gone.obj", "gone.glb", "gone.npz", "gone.ply"])

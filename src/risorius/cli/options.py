@@ -360,7 +360,7 @@ def as_parts(given: list[str] | None) -> dict[str, str]:
     return result
 
 
-def as_weights(given: str | None) -> dict[str, float]:
+def as_weights(given: str | None, *, option: str = "--pose") -> dict[str, float]:
     """Return ``name=weight,...`` as name -> weight; a name alone has weight 1."""
     result: dict[str, float] = {}
     for text in (given or "").split(","):
@@ -371,7 +371,7 @@ def as_weights(given: str | None) -> dict[str, float]:
             result[name] = float(weight) if equals else 1.0
         except ValueError:
             raise typer.BadParameter(
-                f"{text!r} is not name=weight, such as joy=0.5", param_hint="--pose"
+                f"{text!r} is not name=weight, such as joy=0.5", param_hint=option
             ) from None
     return result
 

@@ -34,6 +34,7 @@ from risorius.cli.options import (
     Unit,
     Vectors,
     as_parts,
+    as_weights,
 )
 from risorius.cli.talk import talking
 
@@ -107,8 +108,9 @@ def tune(
     target_shape: Annotated[
         str | None,
         typer.Option(
-            metavar="NAME",
-            help="Shape of the rig --target.  [default: the expression]",
+            metavar="NAME=WEIGHT,...",
+            help="Shape of the rig --target, or several that add up, such as "
+            "mouthSmileLeft,mouthSmileRight.  [default: the expression]",
             show_default=False,
         ),
     ] = None,
@@ -227,8 +229,7 @@ def tune(
         )
         files = TuningFiles(goal, presets_output, style_output, style)
         way = Way(from_head, from_landmarks, source_point, target_point)
-        run_tuning(
-            resolve(head, given), choices, files, talk, way=way,
-            target=Target(target, target_shape) if target else None,
-        )  # fmt: skip
+        shapes = as_weights(target_shape, option="--target-shape")
+        goal_shape = Target(target, shapes) if target is not None else None
+        run_tuning(resolve(head, given), choices, files, talk, way=way, target=goal_shape)
         talk.say_seconds()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from risorius._check import FloatArray
@@ -37,10 +38,10 @@ class TuningFiles:
 
 @dataclass(frozen=True)
 class Target:
-    """A sculpted head, or a shape of a rig."""
+    """A sculpted head, or weights of shapes of a rig."""
 
     path: Path
-    shape: str | None = None
+    shapes: Mapping[str, float] = field(default_factory=dict[str, float])
 
 
 def run_tuning(
@@ -117,7 +118,7 @@ def _goals(head: Head, choices: TuningChoices, target: Target | None) -> dict[st
     several = len(choices.expressions) > 1
     return {
         name: read_target(
-            target.path, head, shape=name if several else target.shape, expression=name
+            target.path, head, shapes={name: 1.0} if several else target.shapes, expression=name
         )
         for name in choices.expressions
     }
@@ -128,7 +129,7 @@ def _require(
 ) -> None:
     """Refuse wishes that contradict each other, before the long work."""
     muscles = choices.genes is not None
-    one_head = target is not None and (target.shape or not may_have_shapes(target.path))
+    one_head = target is not None and (target.shapes or not may_have_shapes(target.path))
     if one_head and len(choices.expressions) > 1:
         raise ParameterError(
             "target: a sculpted head shows one expression; give one, or a rig that has a shape for "

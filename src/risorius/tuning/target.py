@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,9 @@ _STRANGE = 0.05
 _STILL = 1e-4
 
 
-def read_target(path: Path, head: Head, *, expression: str, shape: str | None = None) -> FloatArray:
+def read_target(
+    path: Path, head: Head, *, expression: str, shapes: Mapping[str, float] | None = None
+) -> FloatArray:
     """Return the sculpted shape (n, 3) of a file in the canonical frame [mm].
 
     Parameters
@@ -38,8 +41,8 @@ def read_target(path: Path, head: Head, *, expression: str, shape: str | None = 
     head : Head
     expression : str
         The shape of a rig that is meant if no other is named.
-    shape : str, optional
-        Name of a shape of a rig.
+    shapes : mapping of str to float, optional
+        Weights of shapes of a rig, added up: its two sides, or half a smile.
 
     Raises
     ------
@@ -55,18 +58,20 @@ def read_target(path: Path, head: Head, *, expression: str, shape: str | None = 
             return require_target(head, archive.floats("positions", 3), source=source)
     rig = _rig_of(path)
     if rig is None:
-        if shape is not None:
-            raise ParameterError(f"{source}: is no rig, it has no shape {shape!r}; leave it out")
+        if shapes:
+            name = next(iter(shapes))
+            raise ParameterError(f"{source}: is no rig, it has no shape {name!r}; leave it out")
         mesh, _ = _formats.read_head(path)
         return require_target(head, mesh.positions, source=source)
     names = rig.names
-    wanted = shape or (names[0] if len(names) == 1 else expression)
-    if wanted not in names:
-        raise ParameterError(
-            f"{source}: this rig has no shape {wanted!r}; name one of its {len(names)} with "
-            f"--target-shape: {', '.join(names[:8])}{' ...' if len(names) > 8 else ''}"
-        )
-    return require_target(head, rig.posed({wanted: 1.0}), source=f"{source}, {wanted}")
+    wanted = shapes or {names[0] if len(names) == 1 else expression: 1.0}
+    for name in wanted:
+        if name not in names:
+            raise ParameterError(
+                f"{source}: this rig has no shape {name!r}; name one of its {len(names)} with "
+                f"--target-shape: {', '.join(names[:8])}{' ...' if len(names) > 8 else ''}"
+            )
+    return require_target(head, rig.posed(wanted), source=f"{source}, {'+'.join(wanted)}")
 
 
 def may_have_shapes(path: Path) -> bool:
