@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from nicegui import ui
 from nicegui.events import ValueChangeEventArguments
 
+from risorius.io.json_fields import finite_number
 from risorius.studio.scene import GROUPS
 from risorius.studio.shortcuts import show_shortcuts
 
@@ -77,9 +78,10 @@ class TopBar:
 
             def changed(event: ValueChangeEventArguments[Any], group: str = group) -> None:
                 if self.page.opacity[group] != event.value:
-                    self.page.show(**{group: float(event.value)})
+                    solid = finite_number(event.value, f"slider {group}")
+                    self.page.show(**{group: min(max(solid, 0.0), 1.0)})
 
-            slider.on_value_change(changed)
+            slider.on_value_change(self.page.safely(changed))
             self._sliders[group] = slider
 
     def _picture(self) -> None:

@@ -49,7 +49,8 @@ class FacePanel(Panel):
             with ui.element("div").classes("st-row"):
                 ui.label("intensity").classes("st-name")
                 slider = ui.slider(min=0.0, max=1.0, step=0.01, value=1.0).props("dense")
-                slider.on_value_change(self._intense).props("data-mark=intensity")
+                slider.on_value_change(self.page.safely(self._intense))
+                slider.props("data-mark=intensity")
                 self._shown = ui.label("100 %").classes("st-number")
             with ui.row().style("gap:6px"):
                 ui.button("Rest", icon="restart_alt", on_click=self._rest).props(
@@ -120,8 +121,9 @@ class FacePanel(Panel):
     # -- actions ----------------------------------------------------------------------------
 
     def _move(self, event: GenericEventArguments, controls: list[Control]) -> None:
-        value = finite_number(event.args, "slider")
-        sign = controls[0].mirror_sign if len(controls) > 1 else 1.0
+        first = controls[0]
+        value = min(max(finite_number(event.args, "slider"), first.low), first.high)
+        sign = first.mirror_sign if len(controls) > 1 else 1.0
         values = {control.name: value for control in controls}
         if sign < 0.0:
             values[controls[1].name] = -value
@@ -141,11 +143,17 @@ class FacePanel(Panel):
         self._offer({"gaze_yaw_l": x, "gaze_yaw_r": x, "gaze_pitch_l": y, "gaze_pitch_r": y})
 
     def _offer(self, values: dict[str, float]) -> None:
-        known = {control.name for control in self.shop.controls}
-        self.shop.set_pose({name: value for name, value in values.items() if name in known})
+        known = {control.name: control for control in self.shop.controls}
+        self.shop.set_pose(
+            {
+                name: min(max(value, known[name].low), known[name].high)
+                for name, value in values.items()
+                if name in known
+            }
+        )
 
     def _intense(self, event: ValueChangeEventArguments[Any]) -> None:
-        self._intensity = float(event.value)
+        self._intensity = min(max(finite_number(event.value, "intensity"), 0.0), 1.0)
         self._shown.set_text(f"{100 * self._intensity:.0f} %")
 
     def _emotion(self, name: str) -> None:
@@ -182,9 +190,7 @@ class FacePanel(Panel):
         for name, entries in self._sliders.items():
             for control, slider, _ in entries:
                 if control.name == name:
-                    value = pose.get(name, 0.0)
-                    if abs(float(slider.value or 0.0) - value) > 1e-9:
-                        slider.set_value(value)
+                    slider.set_value(pose.get(name, 0.0))
         self._jaw.put(pose.get("jaw_yaw", 0.0), -pose.get("jaw_pitch", 0.0))
         self._gaze.put(pose.get("gaze_yaw_l", 0.0), pose.get("gaze_pitch_l", 0.0))
         self._numbers()

@@ -131,13 +131,13 @@ class MuscleEditor:
             slider.props("dense").props(f"data-mark=number-{_slug(key)}")
 
             def changed(event: ValueChangeEventArguments[Any]) -> None:
-                shown.set_text(f"{float(event.value):.3g}")
+                shown.set_text(f"{finite_number(event.value, 'slider'):.3g}")
 
             def kept(event: GenericEventArguments) -> None:
                 there = finite_number(event.args, "slider")
                 self._change(key, lambda: self.panel.kept.with_number(self._name, key, there))
 
-            slider.on_value_change(changed)
+            slider.on_value_change(self.page.safely(changed))
             slider.on("change", self.page.safely(kept))
 
     def follow(self) -> None:

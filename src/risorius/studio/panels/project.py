@@ -11,6 +11,7 @@ from nicegui import ui
 from nicegui.events import UploadEventArguments, ValueChangeEventArguments
 
 from risorius import _formats
+from risorius._check import one_of
 from risorius.anatomy.mechanics import Mechanics
 from risorius.errors import FormatError, RisoriusError
 from risorius.head.head import Head
@@ -96,6 +97,7 @@ class ProjectPanel(Panel):
     def _set_profile(self, event: ValueChangeEventArguments[Any]) -> None:
         work = self.shop.document.work
         if event.value != work.project.profile:
+            one_of("profile", event.value, PROFILES)
             project = replace(work.project, profile=str(event.value))
             self.shop.change(f"Profile {event.value}", replace(work, project=project))
 
