@@ -7,6 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from risorius.render import Camera, Surface, bands, buffers
+from risorius.render.buffers import nearest, transparent_layers
+from risorius.render.scene import gather
 from tests.render.scenes import AHEAD, ball, square
 
 UP = np.array([0.0, 1.0, 0.0])
@@ -50,6 +52,19 @@ def test_the_nearest_surface_wins_whatever_the_order(order: tuple[int, ...]) -> 
     np.testing.assert_allclose(seen.depth[32, [32, 14, 6]], [95.0, 100.0, 105.0])
     # In pixels above and below the diagonal, in every layer; face counts start anew in each.
     assert {*seen.face[[40, 24], 32], *seen.face[[50, 14], 14], *seen.face[[58, 6], 6]} == {0, 1}
+
+
+def test_layers_are_empty_outside_their_rows_whatever_memory_held() -> None:
+    thin = square(z=5.0, half=3.3, opacity=0.5)
+    garbage = [np.full((64, 64), 7, np.int32) for _ in range(8)]
+    del garbage
+    scene = gather([square(z=0.0), thin], AHEAD, (64, 64))
+    inverse_depth, _ = nearest(scene, 0, scene.opaque_face_count)
+    layers, rows = transparent_layers(scene, inverse_depth, 3)
+    assert len(layers) == 1 and 0 < rows.start < rows.stop < 64
+    outside = np.delete(layers[0], np.arange(rows.start, rows.stop), axis=0)
+    assert (outside == -1).all()
+    assert (layers[0] >= 0).any()
 
 
 @given(arrays(np.float64, (6, 3), elements=st.floats(-20.0, 20.0)), st.integers(0, 2**16))

@@ -89,7 +89,7 @@ def transparent_layers(scene: Scene, behind: Float32Array, count: int) -> tuple[
 
     Each layer is the nearest one behind the layer before and in front of `behind` (depth
     peeling), so the order is right whatever the order of the triangles. Entries are faces or
-    -1 in the rows returned and mean nothing in others.
+    -1; a pixel may reach beyond the rows returned, so that they are -1 in others as well.
     """
     width, height = scene.size
     first, last = scene.opaque_face_count, scene.face_count
@@ -98,8 +98,7 @@ def transparent_layers(scene: Scene, behind: Float32Array, count: int) -> tuple[
     ceiling = np.full((height, width), 1.0 / scene.near, np.float32)
     while len(rows) and len(layers) < count:
         inverse_depth = np.zeros((height, width), np.float32)
-        face = np.empty((height, width), np.int32)
-        face[rows.start : rows.stop] = -1
+        face = np.full((height, width), -1, np.int32)
         in_bands(
             fill,
             rows,
