@@ -1,65 +1,81 @@
 """Made-up users choose among nine: ``python -m benchmarks.tuning [--seeds 10]``.
 
-Writes ``out/tuning/errors.csv`` and one plot per error rate.
+Writes ``out/tuning/errors.csv`` and one plot per error rate. What was run before with the same
+arguments is taken from ``out/tuning/runs.json``.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import json
 import warnings
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from benchmarks.expressive.truths import Truths
+from benchmarks.tuning.floor import floor
 from benchmarks.tuning.plot import write_plot
-from benchmarks.tuning.wishes import SHAPES, Wish
+from benchmarks.tuning.wishes import GENES, SHAPES, Wish
 from risorius.errors import RisoriusWarning
+from risorius.layered.face import LayeredFace
 from risorius.tuning import Session
 from risorius.tuning.objective import MadeUpUser
 from risorius.vectormuscle import VectorFace
 from tests.tools import real_data_folder
 
 _GENERATIONS = 10
-_FLOOR_STEPS = 10
+_FACES = {"vector": VectorFace, "layered": LayeredFace}
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, default=None, help="folder of the real heads")
+    parser.add_argument("--method", choices=sorted(_FACES), default="vector")
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--errors", type=float, nargs="*", default=[0.0, 0.2])
     parser.add_argument("--strategies", nargs="*", default=["genetic", "preference", "cma"])
     parser.add_argument("--shapes", nargs="*", default=list(SHAPES))
-    parser.add_argument("--genes", choices=("published", "all"), default="all")
-    parser.add_argument("--no-floor", action="store_true", help="do not look for the best face")
+    parser.add_argument("--genes", choices=GENES, default="all")
+    parser.add_argument("--wild", action="store_true", help="show folded and torn faces as well")
+    parser.add_argument("--floor", action="store_true", help="look for the best face as well")
     parser.add_argument("--out", type=Path, default=Path("out/tuning"))
     options = parser.parse_args()
     warnings.simplefilter("ignore", RisoriusWarning)
     truths = Truths.load((options.data or real_data_folder()) / "ict_facekit")
-    face = VectorFace.build(truths.head())
+    face = _FACES[options.method].build(truths.head())
     options.out.mkdir(parents=True, exist_ok=True)
+    known = _Runs(options.out / "runs.json")
     wishes = {name: Wish.of(face, truths, name, genes=options.genes) for name in options.shapes}
-    effects = {shape: wish.sensitivity() for shape, wish in wishes.items()}
-    floors = {name: np.nan if options.no_floor else floor(w) for name, w in wishes.items()}
     rows: list[list[object]] = []
+    key = f"{options.method} {options.genes} {'wild' if options.wild else 'safe'}"
     for error in options.errors:
         lines: dict[str, list[np.ndarray]] = {strategy: [] for strategy in options.strategies}
-        for strategy in options.strategies:
-            for shape, wish in wishes.items():
-                made = [run(wish, strategy, n, error, effects[shape]) for n in range(options.seeds)]
+        for shape, wish in wishes.items():
+            least = np.nan
+            if options.floor:
+                least = known.get(f"{key} {shape} floor", partial(floor, wish))[0]
+            for strategy in options.strategies:
+                made = [
+                    known.get(
+                        f"{key} {shape} {strategy} {error} {seed}",
+                        partial(run, wish, strategy, seed, error, wild=options.wild),
+                    )
+                    for seed in range(options.seeds)
+                ]
                 median = np.median(made, axis=0)
                 share = median / median[0]
                 lines[strategy].append(share)
-                least = floors[shape]
                 rows.append([strategy, error, shape, round(least, 4), *median.round(4).tolist()])
                 halved = next((step for step, value in enumerate(share) if value <= 0.5), "-")
                 print(
-                    f"{strategy:10} errs {error:.1f} {shape:13} first {median[0]:.3f} mm, after "
-                    f"{_GENERATIONS} {median[-1]:.3f} = {share[-1]:.2f}, halved at {halved}; "
-                    f"best known {least:.3f} = {least / median[0]:.2f}",
+                    f"{strategy:10} errs {error:.1f} {shape:13} {len(wish.genome)} genes, first "
+                    f"{median[0]:.3f} mm, after 5 {share[5]:.2f}, after {_GENERATIONS} "
+                    f"{median[-1]:.3f} = {share[-1]:.2f}, halved at {halved}; "
+                    f"best known {least / median[0]:.2f}",
                     flush=True,
                 )
         title = f"error / first error, median of shapes; user errs {error:.0%}"
@@ -72,41 +88,32 @@ def main() -> None:
         writer.writerows(rows)
 
 
-def run(wish: Wish, strategy: str, seed: int, error: float, effect: np.ndarray) -> list[float]:
+def run(wish: Wish, strategy: str, seed: int, error: float, *, wild: bool = False) -> list[float]:
     """Return the error [mm] of the best face picked so far, from the face carried onwards."""
-    genome = wish.candidates.genome
-    session = Session(genome, strategy=strategy, seed=seed, sensitivity=effect)
-    known: dict[bytes, float] = {}
-
-    def distance(values: np.ndarray) -> float:
-        key = values.tobytes()
-        if key not in known:
-            known[key] = wish.distance(values)
-        return known[key]
-
-    user = MadeUpUser(distance, error=error, seed=seed)
-    errors = [distance(genome.start)]
+    genome = wish.genome
+    admit = None if wild else wish.admit
+    session = Session(genome, strategy=strategy, seed=seed, looks=wish.looks, admit=admit)
+    user = MadeUpUser(wish.distance, error=error, seed=seed)
+    errors = [wish.distance(genome.start)]
     for _ in range(_GENERATIONS):
         session.pick(user(session.generation))
         # What a person would take: the first pick of this generation.
-        errors.append(distance(genome.values(session.best)))
+        errors.append(wish.distance(genome.values(session.best)))
     return errors
 
 
-def floor(wish: Wish) -> float:
-    """Return the least error [mm] that a bounded least-squares search finds."""
-    genome = wish.candidates.genome
-    low, width = genome.low, genome.high - genome.low
-    counted = np.flatnonzero(wish.weights > 0.0)
-    root = np.sqrt(wish.weights / wish.weights.sum())[counted, None]
+class _Runs:
+    """Results by what was asked, kept in a file."""
 
-    def residual(place: np.ndarray) -> np.ndarray:
-        return (root * (wish.skin(low + place * width) - wish.truth)[counted]).ravel()
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._known: dict[str, list[float]] = json.loads(path.read_text()) if path.exists() else {}
 
-    # From the middle of the ranges rather than from an edge, where slopes vanish.
-    start = np.clip((genome.start - low) / width, 0.1, 0.9)
-    found = least_squares(residual, start, bounds=(0, 1), diff_step=0.02, max_nfev=_FLOOR_STEPS)
-    return float(np.sqrt(2.0 * found.cost))
+    def get(self, key: str, make: Callable[[], list[float]]) -> list[float]:
+        if key not in self._known:
+            self._known[key] = make()
+            self._path.write_text(json.dumps(self._known))
+        return self._known[key]
 
 
 if __name__ == "__main__":

@@ -15,25 +15,28 @@ from risorius.tuning.strategy import (
     Generation,
     Round,
     Task,
-    first_generation,
     register_strategy,
     settle,
 )
 
-__all__ = ["PreferenceStrategy", "ideal_point"]
+__all__ = ["PreferenceStrategy", "most_probable"]
 
 # Newton steps; the problem is convex and needs five to ten.
 _STEPS = 30
+# Precision of an even spread over a range, 1 / 0.29^2.
+_EVEN = 12.0
 
 
 @dataclass(frozen=True)
 class PreferenceStrategy:
-    """Bradley-Terry model of an ideal point.
+    """Bradley-Terry model of an ideal point, in steps that a person can judge.
 
-    "i rather than j" says that the wanted face lies nearer to i than to j. With distances
-    ``|A (u - u*)|`` that is a half space in u*, so the most probable u* is the minimum of a
-    convex function. The next generation holds the best pick, that minimum and draws from the
-    uncertainty around it.
+    "i rather than j" says that the wanted face lies nearer to i than to j, and of two picks the
+    first nearer than the second. Faces are compared as they are seen; how they change with the
+    values is a linear model around the most probable face. So each comparison is a half space of
+    values, and the most probable ones are the minimum of a convex function. The next generation
+    holds the best pick, that minimum, and draws from the uncertainty around it. No face is
+    further from the middle than a radius that shrinks; distances are what is seen to move.
 
     Parameters
     ----------
@@ -41,130 +44,146 @@ class PreferenceStrategy:
         Width of doubt at a border, share of the distance of the two faces compared.
     lapse : float
         Share of comparisons that say nothing: people err.
+    first_step : float
+        How far the first faces are from the start, share of the effect of all ranges together.
+    radius : float
+        Bound on the way of the next faces, in the same unit.
+    shrink : float
+        Factor of the radius per generation.
     spread : float
         Factor of the uncertainty that new candidates are drawn with.
-    keep : int
-        Picks that are shown again.
+    directions : int
+        The first faces lie along so many of the strongest directions of effect.
     """
 
-    noise: float = 0.25
-    lapse: float = 0.1
-    spread: float = 0.5
-    keep: int = 1
+    noise: float = 0.5
+    lapse: float = 0.25
+    first_step: float = 0.06
+    radius: float = 0.12
+    shrink: float = 0.85
+    spread: float = 0.7
+    directions: int = 8
 
     def first(self, task: Task, rng: np.random.Generator) -> Generation:
-        """Return the start and eight candidates drawn evenly from the bounds."""
-        return first_generation(task, rng)
+        """Return the start and four pairs of faces, each pair to both sides of it.
+
+        The directions of the pairs are at right angles in what is seen, and what they change is
+        equally far from the start.
+        """
+        low, high = task.genome.low, task.genome.high
+        free = np.flatnonzero(~task.locked)
+        if not len(free):
+            return Generation(0, np.tile(task.start, (CANDIDATE_COUNT, 1)), low, high)
+        pairs = (CANDIDATE_COUNT - 1) // 2
+        slopes = task.slopes(task.start)[:, free]
+        power, axes = np.linalg.eigh(slopes.T @ slopes)
+        size = np.sqrt(np.maximum(power[::-1], 0.0))[: self.directions]
+        total = float(np.sqrt(np.maximum(power, 0.0).sum()))
+        # What moves nothing is left out, unless nothing moves anything.
+        size = size[: max(1, int((size > 0.01 * total).sum()))]
+        axes = axes[:, ::-1][:, : len(size)]
+        turned = rng.standard_normal((pairs, len(size)))
+        if len(size) >= pairs:
+            turned = np.linalg.qr(turned.T)[0].T
+        turned /= np.linalg.norm(turned, axis=1, keepdims=True)
+        # What moves little would need values far out of bounds.
+        steps = self.first_step * total * turned / np.maximum(size, 0.1 * max(total, 1e-300))
+        points = np.tile((task.start - low) / task.width, (CANDIDATE_COUNT, 1))
+        both = steps @ axes.T
+        points[1:, free] += np.stack([both, -both], axis=1).reshape(-1, len(free))
+        candidates = np.vstack([task.start, low + points[1:] * task.width])
+        return Generation(0, settle(task, candidates), low, high)
 
     def following(
         self, task: Task, rounds: Sequence[Round], rng: np.random.Generator
     ) -> Generation:
-        """Return the best picks, the most probable face and faces around it."""
-        genome = task.genome
-        low, width = genome.low, genome.high - genome.low
+        """Return the best pick, the most probable face and faces around it."""
+        low, high = task.genome.low, task.genome.high
         free = np.flatnonzero(~task.locked)
         last = rounds[-1].generation
-        kept = rounds[-1].kept[: self.keep]
+        best = rounds[-1].kept[:1]
         if not len(free):
-            return Generation(last.number + 1, last.candidates, genome.low, genome.high)
-        start = ((task.start - low) / width)[free]
-        metric = np.eye(len(free))
-        if task.sensitivity is not None:
-            metric = _metric(task.sensitivity[:, free])
-        better, worse = _comparisons(rounds, low, width)
-        best, factor = ideal_point(
-            better[:, free],
-            worse[:, free],
-            start=start,
-            metric=metric,
-            noise=self.noise,
-            lapse=self.lapse,
-        )
-        drawn = rng.standard_normal((CANDIDATE_COUNT - 1 - len(kept), len(free)))
+            return Generation(last.number + 1, last.candidates, low, high)
+        # The most probable face of the last generation stands in its second place.
+        middle = settle(task, last.candidates[1 if len(rounds) > 1 else 0][None])[0]
+        slopes = task.slopes(middle)[:, free]
+        slope, offset = _borders(task, rounds, middle, slopes)
+        ideal, factor = most_probable(slope / self.noise, offset / self.noise, lapse=self.lapse)
+        reach = self.radius * self.shrink ** len(rounds) * float(np.linalg.norm(slopes))
+        ideal *= _within(slopes @ ideal, 2.0 * reach)
+        drawn = rng.standard_normal((CANDIDATE_COUNT - 2, len(free)))
         around = solve_triangular(factor, drawn.T, lower=True, trans="T").T
-        points = np.tile((task.start - low) / width, (len(drawn) + 1, 1))
-        points[:, free] = np.vstack([best, best + self.spread * around])
-        candidates = np.vstack([kept, low + np.clip(points, 0.0, 1.0) * width])
-        return Generation(last.number + 1, settle(task, candidates), genome.low, genome.high)
+        way = [np.minimum(self.spread, _within(slopes @ each, reach)) for each in around]
+        points = np.tile((middle - low) / task.width, (CANDIDATE_COUNT - 1, 1))
+        points[:, free] += ideal
+        points[1:, free] += np.array(way)[:, None] * around
+        candidates = np.vstack([best, low + points * task.width])
+        return Generation(last.number + 1, settle(task, candidates), low, high)
 
 
-def ideal_point(
-    better: FloatArray,
-    worse: FloatArray,
-    *,
-    start: FloatArray,
-    metric: FloatArray,
-    noise: float,
-    lapse: float = 0.0,
+def _within(effect: FloatArray, reach: float) -> float:
+    """Return the factor that brings an effect (k,) to a length of `reach`."""
+    return min(1.0, reach / max(float(np.linalg.norm(effect)), 1e-300))
+
+
+def _borders(
+    task: Task, rounds: Sequence[Round], middle: FloatArray, slopes: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the most probable ideal point (p,) and the Cholesky factor (p, p) of its precision.
+    """Return the half spaces (k, p) and (k,) of values around `middle` that picks speak for.
 
-    Minimises ``sum log(1 + exp(-m / noise)) + |u - start|^2 / (2 s^2)``, where m is the distance
-    of u from the border between the two faces on the side of the better one, in units of their
-    distance, and s = 0.29 the deviation of an even spread over the range.
+    With faces i, j as seen, the wanted one T and the face M in the middle, ``|T - i| < |T - j|``
+    is ``(i - j) . (T - (i + j) / 2) > 0`` with ``T = M + slopes u``, in units of ``|i - j|^2``.
+    """
+    here = task.seen(middle)
+    rows: list[FloatArray] = []
+    offsets: list[float] = []
+    for each in rounds:
+        seen = [task.seen(values) for values in each.generation.candidates]
+        left = [row for row in range(len(seen)) if row not in each.picks]
+        worse = {pick: [*each.picks[place + 1 :], *left] for place, pick in enumerate(each.picks)}
+        for pick, others in worse.items():
+            for other in others:
+                apart = seen[pick] - seen[other]
+                power = float(apart @ apart)
+                if power > 0.0:
+                    rows.append(slopes.T @ apart / power)
+                    offsets.append(float(apart @ (0.5 * (seen[pick] + seen[other]) - here)) / power)
+    return np.array(rows).reshape(-1, slopes.shape[1]), np.array(offsets)
+
+
+def most_probable(
+    slope: FloatArray, offset: FloatArray, *, lapse: float = 0.0
+) -> tuple[FloatArray, FloatArray]:
+    """Return the most probable point (p,) and the Cholesky factor (p, p) of its precision.
+
+    Minimises ``sum log(1 + exp(offset - slope u)) + |u|^2 / (2 s^2)`` with s = 0.29, the
+    deviation of an even spread over the range.
 
     Parameters
     ----------
-    better, worse : (k, p) float64
-        Compared points in units of the ranges.
-    start : (p,) float64
-        Centre of what is probable beforehand.
-    metric : (p, p) float64
-        Symmetric matrix A^T A of the distance.
-    noise : float
+    slope : (k, p) float64
+    offset : (k,) float64
+        Of comparisons that say ``slope u > offset``, in units of their doubt.
     lapse : float
         Probability that a comparison says nothing; each is weighted by how likely it does say
         something (one step of expectation maximisation with each Newton step).
     """
-    apart = better - worse
-    normal = apart @ metric
-    length = np.maximum(np.einsum("kp,kp->k", normal, apart), 1e-12)
-    slope = normal / (length * noise)[:, None]
-    offset = np.einsum("kp,kp->k", slope, 0.5 * (better + worse))
-    prior = 12.0 * np.eye(len(start))
-    point = start.copy()
-    hessian = prior
+    count = slope.shape[1]
+    prior = _EVEN * np.eye(count)
+    point, hessian = np.zeros(count), prior
     for _ in range(_STEPS):
-        margin = slope @ point - offset
-        doubt = expit(-margin)
+        doubt = expit(offset - slope @ point)
         meant = (1.0 - lapse) * (1.0 - doubt)
         trust = meant / np.maximum(meant + 0.5 * lapse, 1e-300)
-        gradient = prior @ (point - start) - slope.T @ (trust * doubt)
+        gradient = prior @ point - slope.T @ (trust * doubt)
         hessian = prior + (slope * (trust * doubt * (1.0 - doubt))[:, None]).T @ slope
         step = cho_solve(cho_factor(hessian), gradient)
         # Far outside the range the logistic is flat; a long step would overshoot.
-        step /= max(1.0, float(np.linalg.norm(step)) / (0.3 * np.sqrt(len(start))))
+        step /= max(1.0, float(np.linalg.norm(step)) / (0.3 * np.sqrt(count)))
         point = point - step
         if np.abs(step).max() < 1e-9:
             break
     return point, np.asarray(np.linalg.cholesky(hessian), np.float64)
-
-
-def _comparisons(
-    rounds: Sequence[Round], low: FloatArray, width: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return compared candidates (k, p) and (k, p): picked ones against those left."""
-    better: list[FloatArray] = []
-    worse: list[FloatArray] = []
-    for each in rounds:
-        places = (each.generation.candidates - low) / width
-        left = [row for row in range(len(places)) if row not in each.picks]
-        for pick in each.picks:
-            for other in left:
-                if (places[pick] != places[other]).any():
-                    better.append(places[pick])
-                    worse.append(places[other])
-    count = len(width)
-    return np.array(better).reshape(-1, count), np.array(worse).reshape(-1, count)
-
-
-def _metric(sensitivity: FloatArray) -> FloatArray:
-    product = sensitivity.T @ sensitivity
-    scale = float(np.trace(product)) / len(product)
-    if scale <= 0.0:
-        return np.eye(len(product))
-    # What moves nothing keeps a little weight, so that it does not wander.
-    return product / scale + 1e-3 * np.eye(len(product))
 
 
 register_strategy("preference", PreferenceStrategy)

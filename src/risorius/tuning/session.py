@@ -11,6 +11,7 @@ from risorius._check import FloatArray
 from risorius.errors import ParameterError
 from risorius.tuning import cma_strategy, genetic, preference
 from risorius.tuning.genome import Genome
+from risorius.tuning.looks import Looks
 from risorius.tuning.strategy import (
     CANDIDATE_COUNT,
     Generation,
@@ -21,6 +22,9 @@ from risorius.tuning.strategy import (
 )
 
 __all__ = ["Ask", "Session", "tune"]
+
+# After so many halves a candidate is the best pick to the eye.
+_HALVINGS = 4
 
 assert genetic.__all__ and preference.__all__ and cma_strategy.__all__  # they register themselves
 
@@ -42,6 +46,11 @@ class Session:
         Values to begin with instead of the genome's.
     sensitivity : (k, p) float64, optional
         See `Task`.
+    looks : Looks, optional
+        The faces; better than `sensitivity`.
+    admit : callable, optional
+        Says whether a candidate with values (p,) may be shown. One that may not is brought
+        nearer to the best pick so far, in halves, until it may.
 
     Raises
     ------
@@ -57,11 +66,14 @@ class Session:
         seed: int = 0,
         start: Mapping[str, float] | None = None,
         sensitivity: FloatArray | None = None,
+        looks: Looks | None = None,
+        admit: Callable[[FloatArray], bool] | None = None,
     ) -> None:
+        self._admit = admit
         self._strategy = make_strategy(strategy)
         self._seed = seed
         locked = np.zeros(len(genome), bool)
-        self._task = Task(genome, genome.values(start or {}), locked, sensitivity)
+        self._task = Task(genome, genome.values(start or {}), locked, sensitivity, looks)
         self._rounds: list[Round] = []
         self._rolls = [0]
         self._generation = self._propose()
@@ -182,8 +194,22 @@ class Session:
     def _propose(self) -> Generation:
         rng = np.random.default_rng([self._seed, len(self._rounds), self._rolls[-1]])
         if not self._rounds:
-            return self._strategy.first(self._task, rng)
-        return self._strategy.following(self._task, self._rounds, rng)
+            return self._tamed(self._strategy.first(self._task, rng))
+        return self._tamed(self._strategy.following(self._task, self._rounds, rng))
+
+    def _tamed(self, proposed: Generation) -> Generation:
+        """Return the generation with what may not be shown brought nearer to the best pick."""
+        admit = self._admit
+        if admit is None:
+            return proposed
+        best = self.genome.values(self.best)
+        made = proposed.candidates.copy()
+        for row in range(len(made)):
+            for _ in range(_HALVINGS):
+                if admit(made[row]):
+                    break
+                made[row] = 0.5 * (best + made[row])
+        return replace(proposed, candidates=made)
 
 
 def require_picks(picks: Sequence[int]) -> tuple[int, ...]:

@@ -11,6 +11,7 @@ import numpy as np
 from risorius._check import BoolArray, FloatArray
 from risorius.errors import ParameterError
 from risorius.tuning.genome import Genome
+from risorius.tuning.looks import Looks
 
 __all__ = [
     "CANDIDATE_COUNT",
@@ -41,12 +42,33 @@ class Task:
     sensitivity : (k, p) float64 or None
         Effect of each parameter, over its whole range, on what is looked at; strategies that
         learn measure distances by it.
+    looks : Looks or None
+        The faces themselves, in the stead of `sensitivity`: what was seen is then known exactly,
+        and effects anew in every generation.
     """
 
     genome: Genome
     start: FloatArray
     locked: BoolArray
     sensitivity: FloatArray | None = None
+    looks: Looks | None = None
+
+    def seen(self, values: FloatArray) -> FloatArray:
+        """Return what is looked at (k,) of a candidate with values (p,)."""
+        if self.looks is not None:
+            return self.looks.face(values)
+        return self.slopes(values) @ ((values - self.genome.low) / self.width)
+
+    def slopes(self, values: FloatArray) -> FloatArray:
+        """Return how what is looked at changes (k, p) with values (p,) over their ranges."""
+        if self.looks is not None:
+            return self.looks.slopes(values)
+        return np.eye(len(self.genome)) if self.sensitivity is None else self.sensitivity
+
+    @property
+    def width(self) -> FloatArray:
+        """Widths (p,) of the ranges."""
+        return self.genome.high - self.genome.low
 
 
 @dataclass(frozen=True, eq=False)
