@@ -77,6 +77,25 @@ def test_intensities_alone_make_presets(tmp_path: Path) -> None:
         assert value == pytest.approx(before.emotions["anger"][name] + change, abs=1e-4)
 
 
+@pytest.mark.parametrize("method", ["layered", "vector"])
+def test_an_expression_of_ones_own_is_tuned(tmp_path: Path, method: str) -> None:
+    presets, out = tmp_path / "own.json", tmp_path / "tuned.json"
+    assert run("blend", "joy=0.5,anger=0.2", "--preset", "wry", "-o", presets).exit_code == 0
+    options = ("--presets", presets, "--expression", "wry", "--picks", "2;a", *GENETIC)
+    told = answer(run("tune", "builtin", "-m", method, "-o", out, *options, "--json"))
+    tuned = {name.partition(".")[0] for name in told["style"]}
+    assert {"corrugator", "zygomaticus_major"} <= tuned
+
+
+def test_presets_that_lack_the_expression_are_refused(tmp_path: Path) -> None:
+    presets = tmp_path / "few.json"
+    content = {"schema": "risorius/presets", "version": 1, "emotions": {"calm": {"risorius": 0.1}}}
+    presets.write_text(json.dumps(content))
+    result = run("tune", "builtin", "--presets", presets, "-o", tmp_path / "x.json")
+    assert result.exit_code == 1
+    assert "expression: 'joy' is not one of calm" in result.stderr
+
+
 def test_sides_of_intensities_may_differ(tmp_path: Path) -> None:
     out = tmp_path / "mine.presets.json"
     options = ("--genes", "intensities", "--no-mirror", "--picks", "5;a", "-m", "layered")

@@ -85,7 +85,7 @@ def tune(
         typer.Option(
             metavar="NAME,...",
             help="Expressions whose muscles are tuned, one after the other in the order joy, "
-            "surprise, sadness, anger, fear, disgust.",
+            "surprise, sadness, anger, fear, disgust, then others of the presets.",
         ),
     ] = "joy",
     picks: Annotated[

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,11 +17,13 @@ from risorius.controls.presets import PresetBook
 from risorius.errors import ParameterError
 from risorius.head.head import Head
 from risorius.rig.face import Face
-from risorius.tuning.candidates import Candidates, FaceCandidates, Gallery, sensitivity_of
+from risorius.tuning.candidates import Candidates, FaceCandidates, Gallery
 from risorius.tuning.change import Genes
 from risorius.tuning.fit import fit_shape
 from risorius.tuning.intensities import IntensityCandidates
+from risorius.tuning.looks import Looks
 from risorius.tuning.objective import ShapeObjective
+from risorius.tuning.plausible import Plausible
 from risorius.tuning.session import Session, tune
 from risorius.tuning.style import Style
 from risorius.vectormuscle.export import EXPORT_ORDER
@@ -70,8 +73,6 @@ class TuningChoices:
     def __post_init__(self) -> None:
         if not self.expressions:
             raise ParameterError(f"expression: give at least one of {', '.join(EXPORT_ORDER)}")
-        for name in self.expressions:
-            one_of("expression", name, EXPORT_ORDER)
 
     def strategy_for(self, target: bool) -> str:
         """Return the strategy, with a target or without one."""
@@ -174,16 +175,16 @@ class Tuning:
         strategy = choices.strategy_for(target is not None)
         if target is not None and strategy == LEAST_SQUARES:
             return self._fitted(candidates, genome.values(start), target, expression)
-        sensitivity = None
-        if strategy == "preference":
-            with self._talk.stage("sensitivity"):
-                sensitivity = sensitivity_of(candidates)
-        session = Session(
-            genome, strategy=strategy, seed=choices.seed, start=start, sensitivity=sensitivity
-        )
+        looks = Looks(candidates)
+        judge = Plausible.of(self._page.head, looks.positions(genome.named(genome.values(start))))
+        with self._talk.stage("first faces"):
+            session = Session(
+                genome, strategy=strategy, seed=choices.seed, start=start, looks=looks,
+                admit=lambda values: judge(looks.positions(genome.named(values))),
+            )  # fmt: skip
         if target is not None:
-            return self._approached(candidates, session, target, expression)
-        return self._chosen(candidates, session, expression)
+            return self._approached(looks, session, target, expression)
+        return self._chosen(looks, session, expression)
 
     def _chosen(
         self, candidates: Candidates, session: Session, expression: str
@@ -197,9 +198,11 @@ class Tuning:
                 labels = [str(face + 1) for face in range(len(faces))]
                 self._page.write(sheet, faces, labels, title=f"{expression}, generation {number}")
             self._talk.say(f"{expression}, generation {number}: look at {sheet}")
+            looking.submit(now.prepare)
 
         forgiving = self.choices.picks == "contact-sheet"
-        values, self.ended = choose(session, self._lines, show, forgiving=forgiving)
+        with ThreadPoolExecutor(1) as looking:
+            values, self.ended = choose(session, self._lines, show, forgiving=forgiving)
         return values
 
     def _fitted(

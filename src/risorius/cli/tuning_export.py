@@ -10,7 +10,7 @@ from risorius.cli.tuning import Tuning
 from risorius.project.tunable import Tunable
 from risorius.tuning.candidates import FaceCandidates
 from risorius.tuning.muscle_genes import MuscleCandidates
-from risorius.vectormuscle.export import EXPORT_ORDER, Export, export_muscles
+from risorius.vectormuscle.export import Export, export_muscles, export_order
 from risorius.vectormuscle.face import VectorFace
 from risorius.vectormuscle.muscle import VectorMuscle
 from risorius.vectormuscle.vector_set import VectorSet
@@ -60,7 +60,7 @@ def tune_export(export: Export, tuning: Tuning, talk: Talk) -> VectorSet:
         finish=lambda rest: tuning.style.on_vectors(rest, width=width),
     )
     grouped = {group.expression for group in export.groups}
-    for expression in EXPORT_ORDER:
+    for expression in export_order(tuning.presets):
         if expression not in grouped and tuning.wants(expression):
             face = VectorFace.build(export.target, vectors, mechanics=mechanics)
             tuning.run(expression, face, None)
@@ -84,7 +84,7 @@ def tune_muscles(subject: Tunable, tuning: Tuning) -> None:
         If something is refused.
     """
     taken: set[str] = set()
-    for expression in EXPORT_ORDER:
+    for expression in export_order(tuning.presets):
         if not tuning.wants(expression):
             continue
         pose = tuning.pose_of(expression, subject.face)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from risorius._check import FloatArray
+from risorius._check import FloatArray, one_of
 from risorius.anatomy.mechanics import Mechanics
 from risorius.cli.exporting import Way, begin_export, write_vectors
 from risorius.cli.sources import read_head
@@ -71,12 +71,14 @@ def run_tuning(
     RisoriusError
         If something is refused.
     """
+    presets = presets_of(project)
+    for name in choices.expressions:
+        one_of("expression", name, presets.emotions)
     _require(project, choices, files, way, target)
     worn = Style(method=project.method) if files.begin is None else read_style(files.begin)
     worn.require_method(project.method, source=str(files.begin))
     for name in unknown_of(project, worn) if worn.parameters else ():
         talk.note(f"style: no muscle or preset has the parameter {name}")
-    presets = presets_of(project)
 
     def tuning_of(head: Head) -> Tuning:
         return Tuning(head, presets, worn, choices, _goals(head, choices, target), talk)

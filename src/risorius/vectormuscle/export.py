@@ -27,6 +27,7 @@ __all__ = [
     "ExportParameters",
     "MuscleGroup",
     "export_muscles",
+    "export_order",
     "muscle_groups",
 ]
 
@@ -239,6 +240,12 @@ class Export:
         return float(np.linalg.cond(np.sqrt(squared + warp.radii**2)))
 
 
+def export_order(presets: PresetBook) -> tuple[str, ...]:
+    """Return the expressions of a book: the six in the order of the paper, then all others."""
+    others = (name for name in presets.emotions if name not in EXPORT_ORDER)
+    return (*(name for name in EXPORT_ORDER if name in presets.emotions), *others)
+
+
 def muscle_groups(
     vectors: VectorSet, presets: PresetBook, *, first: Iterable[str] = ()
 ) -> tuple[MuscleGroup, ...]:
@@ -252,13 +259,13 @@ def muscle_groups(
     presets : PresetBook
     first : iterable of str
         Expressions that go before all others, and so have all their muscles: those that a person
-        will look at. Both kinds keep the order of `EXPORT_ORDER`.
+        will look at. Both kinds keep the order of `export_order`.
     """
     names = [muscle.name for muscle in vectors.muscles]
     ahead = set(first)
     taken: set[str] = set()
     groups: list[MuscleGroup] = []
-    for expression in sorted(EXPORT_ORDER, key=lambda name: name not in ahead):
+    for expression in sorted(export_order(presets), key=lambda name: name not in ahead):
         pose = presets.emotions.get(expression, {})
         new = tuple(name for name in names if pose.get(name, 0.0) and name not in taken)
         taken.update(new)
