@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from risorius.errors import FormatError, ParameterError
 from risorius.studio.guard import Guard, inside, plain_name, require_allowed
-from risorius.studio.uploads import keep_upload
+from risorius.studio.uploads import keep_upload, trying_upload
 
 HOST = "127.0.0.1:8420"
 
@@ -108,6 +108,25 @@ def test_an_upload_never_replaces_another_file(tmp_path: Path) -> None:
     assert again == first
     assert other.name == "head-2.landmarks.json"
     assert first.read_bytes() == b"one"
+
+
+def test_what_is_refused_leaves_no_file_and_takes_none_away(tmp_path: Path) -> None:
+    def refuse(name: str, data: bytes) -> None:
+        with (
+            pytest.raises(FormatError, match="no take"),
+            trying_upload(tmp_path, name, data, endings=(".fap",)) as path,
+        ):
+            assert path.read_bytes() == data
+            raise FormatError(f"{path}: no take")
+
+    refuse("a.fap", b"one")
+    assert list(tmp_path.iterdir()) == []
+    with trying_upload(tmp_path, "a.fap", b"one", endings=(".fap",)) as path:
+        pass
+    refuse("a.fap", b"one")
+    refuse("a.fap", b"two")
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.read_bytes() == b"one"
 
 
 def test_the_studio_listens_on_the_loopback_only() -> None:

@@ -98,6 +98,10 @@ def test_takes_are_brought_played_alone_and_recorded(tmp_path: Path) -> None:
         page.evaluate("risoriusViewport.set({painted: false})")
         _alone(visitor)
 
+        page.evaluate("risoriusViewport.stream.socket.close()")
+        visitor.until(lambda: _state(visitor, "stats.sceneCount") == 2, "the stream comes back")
+        _alone(visitor)
+
         served, drawn = _state(visitor, "stats.serial"), _state(visitor, "stats.alone")
         page.keyboard.press("Space")
         visitor.until(lambda: _state(visitor, "stats.alone") > drawn + 5, "it plays")
@@ -117,6 +121,11 @@ def test_takes_are_brought_played_alone_and_recorded(tmp_path: Path) -> None:
         visitor.drop(outside / "bad.fap", '[data-mark="take-upload"]')
         visitor.until(lambda: "line 2" in page.locator("body").inner_text(), "it is refused")
         assert not (tmp_path / "bad.fap").exists()
+        (outside / "picture.gif").write_text("GIF89a")
+        visitor.drop(outside / "picture.gif")
+        visitor.until(
+            lambda: "picture.gif: the studio takes" in page.locator("body").inner_text(), "so is it"
+        )
 
         with page.expect_download(timeout=60_000) as download:
             visitor.click("record-glb")

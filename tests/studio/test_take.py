@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -64,6 +65,19 @@ def test_the_moment_of_a_frame_is_the_pose_of_the_rig() -> None:
     shown = take.shown(0.1)(_stage(), {"skin"}).meshes["skin"]
     part = _stage().subject.head.skin
     assert np.abs(shown - wanted[part.first_source()]).max() < 1.0 / 128.0
+
+
+def test_what_was_baked_of_another_stage_moves_only_meshes_that_are_still_there() -> None:
+    take = _take(_stream({"jawOpen": 1.0}))
+    groups = {"skin", "parts"}
+    assert {"skin", "teeth_lower"} <= set(take.shown(0.0)(_stage(), groups).meshes)
+    others = tuple(each for each in _stage().meshes if each.name != "teeth_lower")
+    changed = replace(_stage(), meshes=others)
+    assert "teeth_lower" not in take.shown(0.0)(changed, groups).meshes
+    another = replace(_stage(), meshes=tuple(replace(each) for each in others))
+    shown = take.shown(0.0)(another, groups).meshes
+    assert list(shown) == ["skin"]
+    assert np.array_equal(shown["skin"], another.rest("skin"))
 
 
 @pytest.mark.parametrize("make", [_take, _rehearsal])

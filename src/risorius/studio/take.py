@@ -104,12 +104,21 @@ class Take:
         return (1.0 - share) * self.weights[first] + share * self.weights[second]
 
     def shown(self, time: float) -> Played:
-        """Return what gives the moment at `time` [s]."""
+        """Return what gives the moment at `time` [s].
+
+        On a stage that was changed since, only meshes that are still the same are moved.
+        """
 
         def moment(stage: Stage, groups: set[str]) -> Moment:
-            del stage  # the one that was baked
             meshes = self.rig.posed(self.weights_at(time), groups)
-            return Moment(meshes, _turn(self.turns, time * self.rate))
+            baked = self.rig.stage
+            kept = {
+                name: places
+                for name, places in meshes.items()
+                if stage.mesh(name) is baked.mesh(name)
+            }
+            kept.setdefault("skin", stage.rest("skin"))
+            return Moment(kept, _turn(self.turns, time * self.rate))
 
         return moment
 
