@@ -47,6 +47,9 @@ class CmaStrategy:
         """Return the best pick and eight candidates of the next distribution."""
         return self._asked(task, rounds, int(rng.integers(1 << 31)))
 
+    def prepare(self, task: Task, generation: Generation) -> None:
+        """Do nothing; all waits for the picks."""
+
     def _asked(self, task: Task, rounds: Sequence[Round], seed: int) -> Generation:
         genome = task.genome
         low, width = genome.low, genome.high - genome.low

@@ -69,6 +69,9 @@ class GeneticStrategy:
         everyone = np.vstack([kept, *children])
         return Generation(last.generation.number + 1, settle(task, everyone), low, high)
 
+    def prepare(self, task: Task, generation: Generation) -> None:
+        """Do nothing; all waits for the picks."""
+
     def _ranges(self, task: Task, last: Round, kept: FloatArray) -> tuple[FloatArray, FloatArray]:
         genome, before = task.genome, last.generation
         free = ~task.locked

@@ -57,11 +57,13 @@ class Looks:
     def positions(self, values: Mapping[str, float]) -> FloatArray:
         """Return the vertices (n, 3) of the candidate with these values [mm]."""
         key = self.genome.values(values).tobytes()
-        if key not in self._faces:
-            self._faces[key] = self._candidates.positions(values)
+        made = self._faces.get(key)
+        if made is None:
+            made = self._candidates.positions(values)
+            self._faces[key] = made
             while len(self._faces) > _FACES:
                 self._faces.popitem(last=False)
-        return self._faces[key]
+        return made
 
     def face(self, values: FloatArray) -> FloatArray:
         """Return what is seen (k,) of the candidate with values (p,), from the start [mm]."""

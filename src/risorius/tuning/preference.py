@@ -104,8 +104,7 @@ class PreferenceStrategy:
         best = rounds[-1].kept[:1]
         if not len(free):
             return Generation(last.number + 1, last.candidates, low, high)
-        # The most probable face of the last generation stands in its second place.
-        middle = settle(task, last.candidates[1 if len(rounds) > 1 else 0][None])[0]
+        middle = _middle(task, last)
         slopes = task.slopes(middle)[:, free]
         slope, offset = _borders(task, rounds, middle, slopes)
         ideal, factor = most_probable(slope / self.noise, offset / self.noise, lapse=self.lapse)
@@ -119,6 +118,15 @@ class PreferenceStrategy:
         points[1:, free] += np.array(way)[:, None] * around
         candidates = np.vstack([best, low + points * task.width])
         return Generation(last.number + 1, settle(task, candidates), low, high)
+
+    def prepare(self, task: Task, generation: Generation) -> None:
+        """See how faces change around the most probable one."""
+        task.slopes(_middle(task, generation))
+
+
+def _middle(task: Task, generation: Generation) -> FloatArray:
+    """Return the most probable face: the start, later what stands in the second place."""
+    return settle(task, generation.candidates[1 if generation.number else 0][None])[0]
 
 
 def _within(effect: FloatArray, reach: float) -> float:

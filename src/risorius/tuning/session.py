@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -147,6 +149,10 @@ class Session:
         self._generation = replace(last, candidates=settle(self._task, last.candidates))
         return self._generation
 
+    def prepare(self) -> None:
+        """Do what the next generation needs whatever is picked; call it while a person looks."""
+        self._strategy.prepare(self._task, self._generation)
+
     def lock(self, names: Iterable[str]) -> None:
         """Keep parameters at their best value from now on.
 
@@ -203,12 +209,16 @@ class Session:
         if admit is None:
             return proposed
         best = self.genome.values(self.best)
-        made = proposed.candidates.copy()
-        for row in range(len(made)):
+
+        def nearer(values: FloatArray) -> FloatArray:
             for _ in range(_HALVINGS):
-                if admit(made[row]):
+                if admit(values):
                     break
-                made[row] = 0.5 * (best + made[row])
+                values = 0.5 * (best + values)
+            return values
+
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            made = np.array(list(pool.map(nearer, proposed.candidates)))
         return replace(proposed, candidates=made)
 
 

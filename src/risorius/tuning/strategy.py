@@ -116,6 +116,10 @@ class Strategy(Protocol):
         """Return the generation after the last of `rounds`, of which there is at least one."""
         ...
 
+    def prepare(self, task: Task, generation: Generation) -> None:
+        """Do what the generation after this one needs, whatever is picked."""
+        ...
+
 
 STRATEGIES: dict[str, Callable[[], Strategy]] = {}
 """Strategies by name; each one's module adds itself."""
