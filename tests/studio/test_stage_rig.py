@@ -11,13 +11,17 @@ from hypothesis import strategies as st
 
 from risorius.controls.shape_sets import list_shapes
 from risorius.errors import Cancelled
+from risorius.io.motion import read_stream
 from risorius.project import Project
 from risorius.rig.bake import bake
+from risorius.studio.baking import bake_subject
 from risorius.studio.jobs import Job
 from risorius.studio.scene import GROUPS, Stage, stage_of
-from risorius.studio.stage_rig import StageRig
+from risorius.studio.stage_rig import LARGEST, StageRig
 from risorius.studio.subject import build_subject
+from risorius.studio.take import open_take
 from risorius.studio.work import work_of
+from tests.tools import real_data_folder
 
 NEAR = 1.0 / 128.0
 
@@ -55,6 +59,29 @@ def test_skin_and_parts_are_those_of_the_rig_to_a_hundredth_of_a_millimetre(
     for kind, part in baked.stage.subject.head.parts.items():
         if kind in shown:
             assert np.abs(shown[kind] - wanted[part.first_source()]).max() < NEAR
+
+
+@pytest.mark.real
+@pytest.mark.filterwarnings("ignore::risorius.errors.RisoriusWarning")
+def test_real_takes_on_a_real_head_are_those_of_the_rig_and_small_enough_for_a_page() -> None:
+    folder = real_data_folder()
+    path = folder / "ict_facekit" / "ict_neutral.obj"
+    project = Project(head=path, landmarks=path.with_name("landmarks.json"))
+    stage = stage_of(build_subject(work_of(project)))
+    rig = bake_subject(stage.subject, ("singles",), Job("bake"))
+    baked = StageRig.build(stage, rig, Job("bake"))
+    assert baked.entry_count < LARGEST / 3, "with emotions and ARKit it is still small enough"
+    for name in ("joy", "fear"):
+        stream = read_stream(folder / "xface_fap" / f"{name}.fap")
+        take = open_take(stream, baked, stage.subject.presets, Job("open"))
+        moment = take.shown(2.0)(stage, {"skin", "parts"})
+        weights = dict(zip(baked.rig.names, take.weights_at(2.0).tolist()))
+        wanted = baked.rig.frame.to_canonical(baked.rig.posed(weights))
+        for kind, part in stage.subject.head.parts.items():
+            if kind in moment.meshes:
+                apart = moment.meshes[kind] - wanted[part.first_source()]
+                assert np.abs(apart).max() < NEAR, (name, kind)
+        assert np.abs(moment.meshes["skin"] - stage.rest("skin")).max() > 2.0
 
 
 def test_rest_is_rest_and_meshes_that_never_move_are_not_sent() -> None:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from nicegui import app, ui
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from risorius.errors import ParameterError
+from risorius.errors import ParameterError, RisoriusWarning
 from risorius.project import Project
 from risorius.studio.bakery import Bakery
 from risorius.studio.document import Document
@@ -108,6 +110,7 @@ def serve(
 
     def begin() -> None:
         shop.start()
+        _tell_warnings(shop)
         if ready is not None:
             ready(address)
 
@@ -129,6 +132,18 @@ def serve(
         favicon="🙂",
         ws_max_size=1 << 20,
     )
+
+
+def _tell_warnings(shop: Workshop) -> None:
+    """Show on the pages what the library warns of, beside where it is shown anyway."""
+    loop, otherwise = asyncio.get_running_loop(), warnings.showwarning
+
+    def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        if issubclass(category, RisoriusWarning):
+            loop.call_soon_threadsafe(shop.complain, str(message))
+        otherwise(message, category, *place, **more)
+
+    warnings.showwarning = show
 
 
 def _stream_of(shop: Workshop) -> Callable[[WebSocket], object]:
