@@ -26,6 +26,7 @@ VERBS = [
     ["convert"],
     ["blend"],
     ["compress"],
+    ["wrinkles"],
     ["studio"],
     ["landmarks"],
     ["bench"],

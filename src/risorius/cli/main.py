@@ -25,6 +25,7 @@ from risorius.cli import (
     studio,
     transfer,
     tune,
+    wrinkles,
 )
 
 __all__ = ["app"]
@@ -79,6 +80,7 @@ app.command("play")(play.play)
 app.command("convert")(convert.convert)
 app.command("blend")(blend.blend)
 app.command("compress")(compress.compress)
+app.command("wrinkles")(wrinkles.wrinkles)
 app.command("studio")(studio.studio)
 app.command("landmarks")(landmarks.landmarks)
 app.command("bench")(bench.bench)

@@ -24,7 +24,7 @@ from risorius.render.views import camera_for
 from risorius.rig.bake import empty_rig
 from risorius.rig.rig import Rig
 
-__all__ = ["Portrait"]
+__all__ = ["Portrait", "part_look"]
 
 # An eye that misses the best sphere by more than this share of its radius is not painted.
 _ROUND = 0.12
@@ -208,7 +208,7 @@ def _pieces(rig: Rig, positions: FloatArray) -> tuple[_Piece, ...]:
     for p, m in kinds:
         faces = triangles[(part == p) & (material == m)]
         vertices, local = np.unique(faces, return_inverse=True)
-        look = dict(_look(names[p], labels[m]))
+        look = dict(part_look(names[p], labels[m]))
         if painted.get(names[p], False):
             look.update(_paint(positions, np.flatnonzero(rig.part_of_vertex == p), vertices))
         pieces.append(
@@ -239,7 +239,8 @@ def _has_pupil(material: str) -> bool:
     )
 
 
-def _look(part: str, material: str) -> dict[str, Any]:
+def part_look(part: str, material: str) -> dict[str, Any]:
+    """Return how a material on a part is drawn, as parameters of `Surface`."""
     if part.startswith(_BY_PART):
         return look_of_material(part)
     if colour_of_material(material) != colour_of_material(""):

@@ -8,7 +8,7 @@ from risorius._check import as_number
 from risorius.errors import ParameterError
 from risorius.rig.rig import MorphTarget, Rig
 
-__all__ = ["PLAYED", "played_sums", "with_sums"]
+__all__ = ["PLAYED", "parse_sum", "played_sums", "with_sums"]
 
 _SIDES = ("Left", "Right")
 PLAYED: tuple[str, ...] = (
@@ -32,7 +32,7 @@ PLAYED: tuple[str, ...] = (
 def played_sums(rig: Rig) -> tuple[str, ...]:
     """Return those of `PLAYED` whose shapes the rig has."""
     known = set(rig.names)
-    return tuple(text for text in PLAYED if known.issuperset(_weights(text)))
+    return tuple(text for text in PLAYED if known.issuperset(parse_sum(text)))
 
 
 def with_sums(rig: Rig, sums: Iterable[str]) -> Rig:
@@ -51,13 +51,19 @@ def with_sums(rig: Rig, sums: Iterable[str]) -> Rig:
     """
     made: list[MorphTarget] = []
     for text in dict.fromkeys(sums):
-        moved = rig.posed(_weights(text)) - rig.mesh.positions
+        moved = rig.posed(parse_sum(text)) - rig.mesh.positions
         made.append(MorphTarget.from_dense(text, moved))
     return rig.with_targets((*rig.targets, *made))
 
 
-def _weights(text: str) -> dict[str, float]:
-    """Return the weight of each shape of a sum."""
+def parse_sum(text: str) -> dict[str, float]:
+    """Return the weight of each shape of a sum such as ``"A+B"`` or ``"A=0.5+B"``.
+
+    Raises
+    ------
+    ParameterError
+        If it is malformed, or a single shape without a weight.
+    """
     result: dict[str, float] = {}
     for term in text.split("+"):
         name, equals, number = (part.strip() for part in term.partition("="))

@@ -1,0 +1,3 @@
+"""Plain functions on plain arrays, compiled."""
+
+__all__ = []
