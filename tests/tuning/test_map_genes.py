@@ -44,8 +44,14 @@ def test_sphincters_have_what_their_kind_has() -> None:
         "narrow", "forward", "squeeze", "turn", "stiffness", "window",
     }  # fmt: skip
     assert _genes("orbicularis_oculi") == {"shortening", "pull_x", "pull_y", "stiffness", "window"}
-    # A roll of the lip that neither narrows nor purses has nothing of that to scale.
-    assert _genes("orbicularis_oris_upper") == {"turn", "stiffness", "window"}
+    # What a ring does not do cannot be scaled.
+    oris = MAP.by_name["orbicularis_oris"]
+    assert isinstance(oris.action, MouthAction)
+    plain = replace(oris, on=(), action=replace(oris.action, narrow=0.0, squeeze=0.0))
+    found = map_parameters(MuscleMap((plain,), MAP.landmarks), ["orbicularis_oris"])
+    assert [each.name.partition(".")[2] for each in found] == [
+        "forward", "turn", "stiffness", "window",
+    ]  # fmt: skip
 
 
 def test_neutral_genes_leave_the_same_muscles() -> None:
@@ -124,6 +130,19 @@ def test_candidates_are_the_faces_of_their_maps_to_the_last_bit() -> None:
     slow = LayeredFace.build(bench.face.head, apply_map_genes(MAP, values))
     assert (candidates.positions(values) == slow.pose(pose)).all()
     assert np.abs(candidates.positions(values) - bench.face.pose(pose)).max() > 0.3
+
+
+def test_a_face_does_not_depend_on_the_faces_made_before() -> None:
+    bench = builtin_bench()
+    pose = expression(bench.face, "anger")
+    names = ("corrugator", "procerus", "depressor_anguli")
+    used, fresh = (MapCandidates.of_bench(bench, names, pose) for _ in range(2))
+    values = values_at(used.genome.parameters, 0.7)
+    used.positions(values)
+    used.positions({**values, "corrugator.reach": 0.9})
+    wanted = {**values, "procerus.shortening": 0.8}
+    assert (used.positions(wanted) == fresh.positions(wanted)).all()
+    assert (used.positions({}) == bench.face.pose(pose)).all()
 
 
 def test_a_picked_face_survives_and_genes_that_matter_are_felt() -> None:

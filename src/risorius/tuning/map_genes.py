@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from threading import Lock
 from types import MappingProxyType
 from typing import Any
 
@@ -14,7 +15,7 @@ from risorius._check import FloatArray, one_of
 from risorius.controls.control import Pose
 from risorius.errors import ParameterError
 from risorius.layered.muscle import EyeAction, MouthAction, Muscle, Sheet, SheetAction
-from risorius.layered.muscle_map import MuscleMap
+from risorius.layered.muscle_map import MuscleMap, muscle_entry
 from risorius.layered.workbench import Workbench
 from risorius.rig.face import Face
 from risorius.tuning.change import Change, Gene, Genes, parameters_of
@@ -31,6 +32,8 @@ _SHARE = Change("share", 0.0, 1.0)
 _SHORTENING = Change("factor", 0.6, 1.3, most=0.95)
 # Outwards at full contraction [mm].
 _OUT = Change("add", -2.0, 2.0)
+# Faces that are kept to draw new maps on.
+_KEPT = 12
 _ENDS = tuple(f"{end}_{axis}" for end in ("origin", "insertion") for axis in "xyz")
 _SHEET: Mapping[str, Change] = MappingProxyType(
     {
@@ -128,10 +131,8 @@ class MapCandidates:
     def of_bench(
         bench: Workbench, names: Sequence[str], pose: Pose, *, genes: Genes = "published"
     ) -> MapCandidates:
-        """Return candidates that lay and bind only the muscles that are tuned."""
-        return MapCandidates(
-            bench.face.muscle_map, lambda drawn: bench.redrawn(drawn).face, names, pose, genes
-        )
+        """Return candidates that lay and bind only muscles which no face before had like that."""
+        return MapCandidates(bench.face.muscle_map, _Benches(bench).face, names, pose, genes)
 
     @property
     def genome(self) -> Genome:
@@ -149,6 +150,37 @@ class MapCandidates:
     def positions(self, values: Mapping[str, float]) -> FloatArray:
         """Return the vertices (n, 3) of the candidate with these values [mm]."""
         return self.face_of(values).pose(self.pose)
+
+
+class _Benches:
+    """Faces of the last maps; a new map is drawn on the one with which it shares most muscles.
+
+    The face is the same to the last bit whichever that is (`Workbench.redrawn`).
+    """
+
+    def __init__(self, first: Workbench) -> None:
+        self._first = first
+        self._recent: list[Workbench] = []
+        self._lock = Lock()
+
+    def face(self, drawn: MuscleMap) -> Face:
+        """Return the face on a map; may be called by several threads at once."""
+        with self._lock:
+            known = [self._first, *self._recent]
+        base = max(known, key=lambda bench: _shared(bench.face.muscle_map, drawn))
+        made = base.redrawn(drawn)
+        with self._lock:
+            others = [each for each in self._recent if each is not base]
+            used = [] if base is self._first else [base]
+            self._recent = [*used, made, *others][:_KEPT]
+        return made.face
+
+
+def _shared(one: MuscleMap, other: MuscleMap) -> int:
+    """Return how many muscles two maps of the same muscles have in common."""
+    return sum(
+        a is b or muscle_entry(a) == muscle_entry(b) for a, b in zip(one.muscles, other.muscles)
+    )
 
 
 def _genes(muscle: Muscle, beneath: Collection[str]) -> Iterator[Gene]:
