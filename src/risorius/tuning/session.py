@@ -25,7 +25,7 @@ from risorius.tuning.strategy import (
 
 __all__ = ["Ask", "Session", "tune"]
 
-# After so many halves a candidate is the best pick to the eye.
+# After so many halves a candidate is the best pick to the eye; then that is shown.
 _HALVINGS = 4
 
 assert genetic.__all__ and preference.__all__ and cma_strategy.__all__  # they register themselves
@@ -213,9 +213,9 @@ class Session:
         def nearer(values: FloatArray) -> FloatArray:
             for _ in range(_HALVINGS):
                 if admit(values):
-                    break
+                    return values
                 values = 0.5 * (best + values)
-            return values
+            return best
 
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             made = np.array(list(pool.map(nearer, proposed.candidates)))
