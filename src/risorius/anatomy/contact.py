@@ -140,7 +140,7 @@ class Contact:
             eyes,
             LipContact.build(skin, mechanics.lips),
             LiningContact.build(skin, mechanics.lips),
-            Unfolding.build(skin, mechanics.lips),
+            Unfolding.build(skin),
         )
 
     def resolve(self, moved: FloatArray, values: Mapping[str, float]) -> FloatArray:
@@ -157,7 +157,6 @@ class Contact:
         for kind, arch in self.arches.items():
             jaw = self._jaw(values) if kind == "teeth_lower" else None
             moved = self._clear_teeth(moved, arch, jaw)
-        moved = self.folds.relieve(moved)
         for eye in self.eyes:
             yaw = values.get(f"gaze_yaw_{eye.side}", 0.0)
             pitch = values.get(f"gaze_pitch_{eye.side}", 0.0)

@@ -10,20 +10,17 @@ from scipy.sparse import coo_matrix, csr_matrix
 from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.outwards import unit
 from risorius.anatomy.skin import Skin
-from risorius.mesh.lips import LipSides
 
 __all__ = ["Unfolding"]
 
 # A face seen from outside keeps at least this share of its area, or its surroundings give way.
-_LEAST = 0.25
+_LEAST = 0.15
 # Faces that look away from their surroundings at rest already, by this cosine, do not count.
 _ALIGNED = 0.35
 # Rounds at most; in each, passes over the normals around a face, over where to give way, and
 # over the motion that is taken there.
-_ROUNDS, _AROUND, _SPREAD, _EASE = 8, 2, 2, 3
+_ROUNDS, _AROUND, _SPREAD, _EASE = 5, 2, 2, 3
 _DONE = 0.02
-# Lining this near to the margin of its lip can be seen [mm].
-_INNER = 8.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,8 +58,8 @@ class Unfolding:
     free: FloatArray
 
     @staticmethod
-    def build(skin: Skin, lips: LipSides) -> Unfolding:
-        """Bind the moving skin that can be seen, the inner side of the lips among it."""
+    def build(skin: Skin) -> Unfolding:
+        """Bind the moving skin that can be seen."""
         moving = (skin.mobility > 0.0) & (skin.mass > 1e-9)
         faces = skin.mesh.faces[moving[skin.mesh.faces].all(axis=1)]
         vertices, local = np.unique(faces, return_inverse=True)
@@ -80,8 +77,8 @@ class Unfolding:
         cross = whole._crosses(rest)
         out = whole._surroundings(cross)
         size = np.einsum("fd,fd->f", cross, out)
-        lining = lips.inside & (lips.distance < _INNER * skin.scale)
-        shown = (~skin.hidden | lining)[vertices][faces].all(axis=1)
+        # Lids turn about the eyeball and have contact of their own.
+        shown = ~(skin.hidden | (skin.lids > 0.5))[vertices][faces].any(axis=1)
         counts = shown & (size > _ALIGNED * np.linalg.norm(cross, axis=1))
         free = (1.0 - skin.lids[vertices]) * np.minimum(4.0 * skin.mobility[vertices], 1.0)
         return Unfolding(
@@ -127,7 +124,12 @@ class Unfolding:
 
     def _crosses(self, positions: FloatArray) -> FloatArray:
         first = positions[self.faces[:, 0]]
-        return np.cross(positions[self.faces[:, 1]] - first, positions[self.faces[:, 2]] - first)
+        a, b = positions[self.faces[:, 1]] - first, positions[self.faces[:, 2]] - first
+        result = np.empty_like(a)
+        for axis in range(3):
+            i, j = (axis + 1) % 3, (axis + 2) % 3
+            result[:, axis] = a[:, i] * b[:, j] - a[:, j] * b[:, i]
+        return result
 
     def _surroundings(self, cross: FloatArray) -> FloatArray:
         """Return the mean direction (f, 3) of the faces around each face."""
