@@ -68,6 +68,6 @@ def test_muscles_and_intensities_are_tuned_together() -> None:
     assert both.genome.names[-1].startswith("anger.")
     stronger = {"corrugator.strength": 1.2, "anger.corrugator": -0.3}
     made = both.positions(stronger)
-    weaker = {**pose, "corrugator_l": 0.7, "corrugator_r": 0.7}
+    weaker = {**pose, **{name: pose[name] - 0.3 for name in muscles.names}}
     wanted = face.with_muscles(muscles.muscles(stronger)).pose(weaker)
     assert np.allclose(made, wanted, rtol=0.0, atol=1e-12 * np.ptp(made))
