@@ -15,7 +15,7 @@ from risorius.spatial.raycast import Scene
 __all__ = ["LiningContact"]
 
 # Lining this near to the margin of its lip goes with it and has no thickness to keep [mm].
-_MARGIN = 1.0
+_MARGIN = 5.0
 # Skin farther in front than this is not met [mm].
 _FARTHEST = 45.0
 # The tissue in front keeps this share of its thickness, up to so thick [mm].
