@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from risorius._check import FloatArray, IntArray
+from risorius._check import BoolArray, FloatArray, IntArray
 from risorius.anatomy.outwards import unit
 from risorius.anatomy.skin import Skin
 from risorius.mesh.lips import LipSides
@@ -15,13 +15,17 @@ from risorius.spatial.raycast import Scene
 __all__ = ["LiningContact"]
 
 # Lining this near to the margin of its lip goes with it and has no thickness to keep [mm].
-_MARGIN = 5.0
+_MARGIN = 1.0
+# Up to here it lies on the teeth, and the lip in front of it gives way instead [mm].
+_ON_TEETH = 5.0
 # Skin farther in front than this is not met [mm].
 _FARTHEST = 45.0
 # The tissue in front keeps this share of its thickness, up to so thick [mm].
 _LEFT, _THICKEST = 0.8, 9.0
 # A push is spread over the lining beside it: rounds, passes a round, and what makes up for both.
 _ROUNDS, _PASSES, _GAIN = 6, 3, 1.5
+# Passes over which a lip that gives way takes the skin around along.
+_EASE = 14
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +45,8 @@ class LiningContact:
         From the lining to that skin, unit.
     slack : (k,) float64
         How far the lining may come nearer to it [mm].
+    firm : (k,) bool
+        Lining that lies on teeth: the skin in front of it moves instead.
     """
 
     skin: Skin
@@ -49,6 +55,7 @@ class LiningContact:
     shares: FloatArray
     directions: FloatArray
     slack: FloatArray
+    firm: BoolArray
 
     @staticmethod
     def build(skin: Skin, lips: LipSides) -> LiningContact:
@@ -69,8 +76,11 @@ class LiningContact:
         kept = hits.hit & (side[corners] * side[lining][:, None] >= 0.0).all(axis=1)
         gap = hits.distance[kept]
         least = np.minimum(_LEFT * gap, _THICKEST * skin.scale)
+        firm = lips.distance[lining[kept]] < _ON_TEETH * skin.scale
+        # A lip is thinnest at its margin, where nothing but the order of its sides counts.
+        slack = gap - np.where(firm, 0.5 * least, least)
         return LiningContact(
-            skin, lining[kept], corners[kept], hits.bary[kept], ahead[kept], gap - least
+            skin, lining[kept], corners[kept], hits.bary[kept], ahead[kept], slack, firm
         )
 
     def hold_back(self, moved: FloatArray) -> FloatArray:
@@ -81,24 +91,49 @@ class LiningContact:
         moved : (n, 3) float64
             Displacement of the posed skin [mm].
         """
-        front = np.einsum("kc,kcd->kd", self.shares, moved[self.corners])
         result = moved
         for number in range(_ROUNDS):
+            front = np.einsum("kc,kcd->kd", self.shares, result[self.corners])
             nearer = np.einsum("kd,kd->k", result[self.vertices] - front, self.directions)
             excess = np.maximum(nearer - self.slack, 0.0)
             if not excess.any():
                 break
             push = np.zeros_like(moved)
-            push[self.vertices] = -excess[:, None] * self.directions
+            push[self.vertices] = -np.where(self.firm, 0.0, excess)[:, None] * self.directions
+            forward = self._forward(excess)
             last = number == _ROUNDS - 1
             if not last:
-                push = _GAIN * self._spread(push)
-            result = result + push
+                push = _GAIN * self._spread(push, self.vertices)
+            result = result + push + self._eased(forward)
         return result
 
-    def _spread(self, push: FloatArray) -> FloatArray:
+    def _forward(self, excess: FloatArray) -> FloatArray:
+        """Return how the skin in front of the firm lining (n, 3) gives way."""
+        rows = np.flatnonzero(self.firm & (excess > 0.0))
+        result = np.zeros_like(self.skin.positions)
+        weight = np.zeros(len(result))
+        for corner in range(3):
+            place, share = self.corners[rows, corner], self.shares[rows, corner]
+            np.add.at(result, place, (share * excess[rows])[:, None] * self.directions[rows])
+            np.add.at(weight, place, share)
+        hit = weight > 0.0
+        result[hit] /= weight[hit, None]
+        return result
+
+    def _eased(self, forward: FloatArray) -> FloatArray:
+        """Return a push of the front (n, 3) that carries the lip around along, without a beak."""
+        most = np.abs(forward).max(initial=0.0)
+        if most == 0.0:
+            return forward
+        for _ in range(_EASE):
+            forward = self.skin.average @ forward
+        forward[self.vertices] = 0.0
+        # Averages lose height; the whole hill is raised so that its top is as high as before.
+        return forward * (most / max(np.abs(forward).max(), 1e-12))
+
+    def _spread(self, push: FloatArray, among: IntArray) -> FloatArray:
         for _ in range(_PASSES):
             push = self.skin.average @ push
         only = np.zeros_like(push)
-        only[self.vertices] = push[self.vertices]
+        only[among] = push[among]
         return only
