@@ -1,4 +1,4 @@
-"""Skin that folds on the target and not on the source is smoothed."""
+"""Skin that folds or tears on the target and not on the source is smoothed."""
 
 from __future__ import annotations
 
@@ -81,6 +81,30 @@ def test_a_fold_that_the_source_has_as_well_is_kept_to_the_bit() -> None:
     moved = np.where(np.linalg.norm(points - top, axis=1)[:, None] < 14.0, [0.0, -12.0, 0.0], 0.0)
     assert least_progress(bound.source.mesh, moved).min() < 0.0
     assert relief.relieve(moved, moved).tobytes() == moved.tobytes()
+
+
+def torn_corner() -> tuple[np.ndarray, int]:
+    """Return motion in which one vertex beside the mouth's corner lags 4 mm behind, and its row."""
+    target = other_cloning().target
+    assert target.lips is not None
+    points, lips = target.mesh.positions, target.lips
+    rows = np.flatnonzero((lips.to_corner < 0.1 * lips.width) & ~target.inside & (points[:, 0] > 0))
+    row = int(rows[np.argmax(lips.to_corner[rows])])
+    moved = np.zeros_like(points)
+    moved[lips.to_corner < 0.4 * lips.width] = [0.0, -6.0, -2.0]
+    moved[row] += [0.0, 4.0, 1.0]
+    return moved, row
+
+
+def test_an_edge_that_tears_beside_the_mouth_is_mended() -> None:
+    bound = other_cloning()
+    relief = FoldRelief(bound.source, bound.target, bound.skin.mapping)
+    moved, row = torn_corner()
+    still = np.zeros_like(bound.source.mesh.positions)
+    torn = relief.torn(still, moved)
+    assert torn[row] > 0.0
+    made = relief.relieve(still, moved)
+    assert made[row] == pytest.approx([0.0, -6.0, -2.0], abs=0.5)
 
 
 def test_a_pair_without_folds_is_carried_alike_with_and_without_relief() -> None:

@@ -134,7 +134,15 @@ class FoldRelief:
         return np.clip((made - given) / _TORN, 0.0, 1.0)
 
     def relieve(self, ours: FloatArray, theirs: FloatArray) -> FloatArray:
-        """Return the target's displacement (n, 3) without folds that the source does not have."""
+        """Return the target's displacement (n, 3) without folds that the source does not have.
+
+        Parameters
+        ----------
+        ours : (k, 3) float64
+            Displacement of the source's skin [mm].
+        theirs : (n, 3) float64
+            Displacement of the target's skin, as cloned [mm].
+        """
         excess, torn = self.excess(ours, theirs), self.torn(ours, theirs)
         folds = np.flatnonzero(excess > _LEAST).astype(np.int32)
         tears = np.flatnonzero(torn > 0.0).astype(np.int32)
