@@ -24,7 +24,11 @@ FACE = builtin_face()
 HEAD = FACE.head
 REST = HEAD.positions
 CONTROLS = {control.name: control for control in FACE.controls}
-EMOTIONS = default_presets().emotions
+# Vector muscles lack some that the emotions name; the presets say what stands in for them.
+EMOTIONS = {
+    name: default_presets().fit(pose, FACE.controls).pose
+    for name, pose in default_presets().emotions.items()
+}
 # Two muscles that overlap, jaw, lid, gaze, tongue and cheek at once, different on both sides.
 BUSY = {
     "zygomaticus_major_l": 0.8,
