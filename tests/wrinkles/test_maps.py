@@ -12,6 +12,7 @@ from risorius.controls import default_presets
 from risorius.errors import LandmarkError, MeshError, ParameterError
 from risorius.rig import Rig, bake
 from risorius.wrinkles import WrinkleGroup, Wrinkler, parse_group, wrinkle_maps
+from risorius.wrinkles.chart import chart_of
 from tests.layered.faces import builtin_layered
 
 SHAPES = ("browInnerUp", "browOuterUpLeft", "browOuterUpRight", "jawOpen")
@@ -135,3 +136,17 @@ def test_the_same_rig_gives_the_same_maps() -> None:
     np.testing.assert_array_equal(
         wrinkle_maps(rig(), [BROW], size=512).maps[0].normals, brow_map().normals
     )
+
+
+def test_a_map_leans_down_the_slope_of_its_relief() -> None:
+    wrinkler = Wrinkler(rig())
+    relief = brow_map().relief
+    wanted = np.zeros(wrinkler.skin.mesh.face_count, bool)
+    wanted[relief.patch.coarse_face] = True
+    chart = chart_of(rig(), wrinkler.skin, wanted)
+    column, row = chart.places(relief.patch, 512).mean(axis=1).astype(int).T
+    slope = chart.slopes(relief.patch, relief.slope).mean(axis=1)
+    shown = brow_map().normals[row, column, :2] / 127.5 - 1.0
+    steep = np.abs(slope).max(axis=1) > 0.1
+    for axis in range(2):
+        assert np.corrcoef(shown[steep, axis], slope[steep, axis])[0, 1] < -0.8

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -194,8 +195,9 @@ class LayeredCraft(Craft):
 class _MapSketch(Sketch):
     """What sheets and rings have in common: they lie on bones and muscles of the map."""
 
+    @abstractmethod
     def _made(self, work: Work, subject: Subject) -> Muscle | None:
-        raise NotImplementedError
+        """Return the muscle drawn so far; None if it is none yet."""
 
     def drawn(self, work: Work, subject: Subject) -> Drawn | None:
         """Return the map with the muscle."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -27,7 +28,7 @@ class Drawn:
     name: str
 
 
-class Sketch:
+class Sketch(ABC):
     """Lines of places; the last one is open. Each method has sketches of its own.
 
     Parameters
@@ -47,9 +48,9 @@ class Sketch:
         self.lines: list[list[Place]] = [[]]
 
     @property
+    @abstractmethod
     def hint(self) -> str:
         """What to do next."""
-        raise NotImplementedError
 
     @property
     def is_complete(self) -> bool:
@@ -66,6 +67,7 @@ class Sketch:
         """
         return ["skull", "muscles", "skin"] if skin else ["skull", "muscles"]
 
+    @abstractmethod
     def drawn(self, work: Work, subject: Subject) -> Drawn | None:
         """Return what has been drawn so far; None if that is no muscle yet.
 
@@ -74,7 +76,6 @@ class Sketch:
         ParameterError
             If it cannot become one.
         """
-        raise NotImplementedError
 
     def put(self, place: Place) -> None:
         """Add a place to the open line."""
